@@ -168,7 +168,7 @@ def test_degrees_stand_after_both_numbers_of_a_direction(node):
     row = row_data(shown, (0.0, 0.0), ("light.sun",))
     for language, text in (("en", "110°, 10.5°"), ("fr", "110°, 10,5°")):
         assert spelled_value(slider, (110.0, 10.5), language) == text
-        live = node.call("between.js", "spelled", row, (110.0, 10.5), language == "fr")
+        live = node.call("book_series.js", "spelled", row, (110.0, 10.5), language == "fr")
         numbers = [float(part.removesuffix("°").replace(",", ".")) for part in live.split(", ")]
         assert numbers == [110.0, 10.5] and live.count("°") == 2 and ("." in live) == (language == "en")
 
@@ -184,7 +184,7 @@ def test_a_colour_between_two_is_spelled_as_those_are(node):
     colour = (0.6120607621465106, 0.5431826535604307, 0.44618878000622914)
     encoded = [round(255 * (1.055 * part ** (1 / 2.4) - 0.055)) for part in colour]  # IEC 61966-2-1
     for comma in (False, True):
-        result = node.call("between.js", "spelled", row, colour, comma)
+        result = node.call("book_series.js", "spelled", row, colour, comma)
         assert result == "#" + "".join(f"{byte:02x}" for byte in encoded)
 
 
@@ -218,7 +218,7 @@ def test_lines_of_a_bug_are_put_back_as_in_the_window(lesson, node):
     block, result = lesson.named["fault"], lesson_data(lesson, library)["blocks"]["fault"]
     region, text = bug_region(block), library.data()["files"][block.file]
     for lines in (region.broken, region.correct, "\n float a;\n\nint b;\n"):
-        put = node.call("book_tasks.js", "withLines", text, result, lines)
+        put = node.call("book_text.js", "withLines", text, result, lines)
         assert put.rstrip("\n") == region.with_lines(lines).rstrip("\n")
 
 

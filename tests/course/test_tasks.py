@@ -325,7 +325,7 @@ def test_a_kernels_author_sets_no_values(task, engine):
 
 
 def test_pictures_are_compared_as_in_the_browser():
-    code = (GLSL.parent / "playground/publish/web/runtime/picture_check.js").read_text(encoding="utf-8")
+    code = (GLSL.parent / "playground/publish/web/runtime/work_check.js").read_text(encoding="utf-8")
     assert f"LEVELS = {LEVELS};" in code and f"SHARE = {SHARE};" in code
     first = np.full((50, 20, 3), 100, np.uint8)
     other = first.copy()

@@ -32,7 +32,7 @@ def said_in_a_page(node: Node, check: Check, outcome: dict[str, Any], language: 
     if check.of:
         page["of"] = {"path": check.of, "output": check.of, "name": check.of}
     sentence = node.call(
-        "work_words.js", "sentence", outcome, page, dict(labels("tasks", language)), language == "fr"
+        "work_check.js", "sentence", outcome, page, dict(labels("tasks", language)), language == "fr"
     )
     assert isinstance(sentence, str)
     return sentence

@@ -380,7 +380,7 @@ def _scripts(data: dict[str, dict[str, Any]], library: Library) -> Iterator[tupl
 
 
 def _said_in_a_page(language: str) -> dict[str, str]:
-    """Return what work_words.js says of works; measures are taken elsewhere."""
+    """Return what work_check.js says of works; measures are taken elsewhere."""
     return {key: text for key, text in labels("tasks", language).items() if not key.startswith("measure_")}
 
 

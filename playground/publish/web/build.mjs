@@ -32,7 +32,7 @@ const licence = () =>
 
 /** A hash of the runtime's files and of what bundles them: names and bytes, in the order of their names. */
 function hashOfSources() {
-  const names = readdirSync(join(HERE, "runtime")).filter((name) => /\.(js|css)$/.test(name)).sort();
+  const names = readdirSync(join(HERE, "runtime")).filter((name) => /\.(js|css|json)$/.test(name)).sort();
   const hash = createHash("sha256");
   const others = ["build.mjs", "package-lock.json", "../../shader/widgets.json"];
   for (const name of [...others, ...names.map((name) => `runtime/${name}`)]) {

@@ -41,7 +41,7 @@ def sources_in(text: str) -> str:
 
 def hash_of_sources() -> str:
     """Return the hash of the sources as they are in a checkout, as build.mjs works it out."""
-    names = sorted(path.name for path in (_HERE / "runtime").iterdir() if path.suffix in (".js", ".css"))
+    names = sorted(p.name for p in (_HERE / "runtime").iterdir() if p.suffix in (".js", ".css", ".json"))
     digest = hashlib.sha256()
     others = ("build.mjs", "package-lock.json", "../../shader/widgets.json")
     for name in (*others, *(f"runtime/{name}" for name in names)):

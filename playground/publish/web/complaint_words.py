@@ -1,6 +1,6 @@
-"""Write down what is known of drivers' logs as a JavaScript module: patterns and sentences, as data.
+"""Write down what is known of drivers' logs for the page runtime: patterns and sentences, as JSON.
 
-``runtime/complaint_words.js`` is what ``module`` returns, so that an error in a page has the words
+``runtime/complaint_words.json`` is what ``text`` returns, so that an error in a page has the words
 that it has in a terminal. ``python -m playground.publish.web.complaint_words`` writes it again.
 """
 
@@ -15,60 +15,14 @@ from playground.files import write_file
 from playground.shader import complaints, driver_log
 from playground.shader.reserved_names import FETCHES, GIVEN, GIVEN_INSTEAD, GLSL_WORDS
 
-FILE = Path(__file__).parent / "runtime" / "complaint_words.js"
+FILE = Path(__file__).parent / "runtime" / "complaint_words.json"
 
 # What comes into a text by copying it from a page or a document: blanks, quotes, dashes, signs.
-_COPIED = (
-    0xA0,
-    0xAD,
-    0x2002,
-    0x2003,
-    0x2007,
-    0x2009,
-    0x200A,
-    0x200B,
-    0x202F,
-    0x2060,
-    0x3000,
-    0xFEFF,
-    0x2018,
-    0x2019,
-    0x201A,
-    0x201C,
-    0x201D,
-    0x201E,
-    0xAB,
-    0xBB,
-    0x2032,
-    0x2033,
-    0xB4,
-    0x2010,
-    0x2011,
-    0x2012,
-    0x2013,
-    0x2014,
-    0x2015,
-    0x2212,
-    0xD7,
-    0xF7,
-    0xB7,
-    0x2022,
-    0x2026,
-    0x2215,
-    0x2217,
-    0x37E,
-    0xFF08,
-    0xFF09,
-    0xFF0C,
-    0xFF1B,
-    0xB0,
-    0xB2,
-    0xB3,
-    0x2264,
-    0x2265,
-    0x2260,
-    0xB1,
-)
+_COPIED = """
+A0 AD 2002 2003 2007 2009 200A 200B 202F 2060 3000 FEFF 2018 2019 201A 201C 201D 201E
+AB BB 2032 2033 B4 2010 2011 2012 2013 2014 2015 2212 D7 F7 B7 2022 2026 2215
+2217 37E FF08 FF09 FF0C FF1B B0 B2 B3 2264 2265 2260 B1
+""".split()
 
 # Logs that browsers give: ANGLE's compiler, the same on Direct3D, Mesa's linker, and others'.
 _IN_BROWSERS = (
@@ -77,7 +31,6 @@ _IN_BROWSERS = (
     "0:12(8): error: `x' undeclared",
     "error: too many uniforms",
 )
-_WIDTH = 108
 
 
 def words() -> dict[str, object]:
@@ -117,19 +70,21 @@ def words() -> dict[str, object]:
         "fetches": FETCHES,
         "foreign": complaints.FOREIGN,
         "nameless": complaints.NAMELESS,
-        "characters": {c: unicodedata.name(c, complaints.NAMELESS) for c in map(chr, _COPIED)},
+        "characters": {
+            c: unicodedata.name(c, complaints.NAMELESS) for c in (chr(int(code, 16)) for code in _COPIED)
+        },
         "pastEnd": complaints.PAST_END,
     }
 
 
-def module() -> str:
-    """Return the text of the module."""
-    rows = [row for name, value in words().items() for row in _rows(f"  {name}: ", value)]
-    return (
-        "// complaint_words.js -- what Python knows of drivers' logs: written by"
-        " playground/publish/web/complaint_words.py.\n\n"
-        "export const WORDS = {\n" + "\n".join(rows) + "\n};\n"
-    )
+def text() -> str:
+    """Return the file's text, a name a line."""
+    rows = [f" {json.dumps(name)}: {json.dumps(value)}" for name, value in words().items()]
+    return "{\n" + ",\n".join(rows) + "\n}\n"
+
+
+def _character(code: str) -> str:
+    return chr(int(code, 16))
 
 
 def _pattern(pattern: re.Pattern[str]) -> list[str]:
@@ -143,42 +98,5 @@ def _pattern(pattern: re.Pattern[str]) -> list[str]:
     return [source, flags]
 
 
-def _rows(head: str, value: object) -> list[str]:
-    """Return a value behind its name as rows of JavaScript: parts of it, or of a long text, on each."""
-    if len(row := f"{head}{json.dumps(value)},") <= _WIDTH:
-        return [row]
-    inside = " " * (len(head) - len(head.lstrip()) + 2)
-    if isinstance(value, str):
-        size = _WIDTH - len(inside) - 20  # what escapes add
-        parts = [json.dumps(value[at : at + size]) for at in range(0, len(value), size)]
-        return [head.rstrip(), *_texts(parts, inside)] if head.strip() else _texts(parts, inside[2:])
-    if isinstance(value, dict):
-        pairs = [
-            row for key, element in value.items() for row in _rows(f"{inside}{json.dumps(key)}: ", element)
-        ]
-        return [f"{head}{{", *_together(pairs, inside), f"{inside[2:]}}},"]
-    assert isinstance(value, list)
-    items = [row for element in value for row in _rows(inside, element)]
-    return [f"{head}[", *_together(items, inside), f"{inside[2:]}],"]
-
-
-def _texts(parts: list[str], inside: str) -> list[str]:
-    return [f"{inside}{part}{' +' if part is not parts[-1] else ','}" for part in parts]
-
-
-def _together(rows: list[str], inside: str) -> list[str]:
-    """Put short rows of the same depth on one line."""
-    lines: list[str] = []
-    for row in rows:
-        short = row.startswith(inside) and row[len(inside)] not in " ]}" and row[-2:-1] not in "[{"
-        last = lines[-1] if lines else ""
-        if short and last.endswith(",") and last.startswith(inside) and last[len(inside)] not in " ]}":
-            if len(last) + len(row.strip()) + 1 <= _WIDTH:
-                lines[-1] = f"{last} {row.strip()}"
-                continue
-        lines.append(row)
-    return lines
-
-
 if __name__ == "__main__":
-    write_file(FILE, module())
+    write_file(FILE, text())

@@ -111,7 +111,7 @@ def page_html(
 
 
 def page_text(page: Mapping[str, Any]) -> str:
-    """Return a page's data as JSON without its blobs, which are elements of their own: see page_file.js."""
+    """Return a page's data as JSON without its blobs, which are elements of their own: see packed.js."""
     shared = {name: value for name, value in page["shared"].items() if name != "blobs"}
     return json.dumps({**page, "shared": shared}, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 

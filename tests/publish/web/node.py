@@ -55,7 +55,7 @@ class Node:
         )
 
     def call(self, module: str, name: str, *values: object) -> Any:
-        """Return what a function of a module returns, as ``call("meshes.js", "buildMesh", …)``.
+        """Return what a function of a module returns, as ``call("draws.js", "buildMesh", …)``.
 
         Typed arrays are flat NumPy arrays on this side, whatever the shape that they were given with.
         Raises ``NodeError`` with what the function threw.
@@ -73,7 +73,7 @@ class Node:
     def run(self, script: str, *values: object) -> Any:
         """Return what a function returns, written as text: of the values, and of what imports a module.
 
-        As ``run("async (data, load) => (await load('es.js')).toES(data)", text)``.
+        As ``run("async (data, load) => (await load('kernel_texts.js')).toES(data)", text)``.
         """
         return self._ask({"script": script, "values": values})
 

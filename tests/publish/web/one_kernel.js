@@ -1,12 +1,12 @@
 // one_kernel.js -- a player of one kernel, for tests of the editor: compiled and drawn by WebGL itself.
 
 import { complaints } from "../../../playground/publish/web/runtime/complaints.js";
-import { libraryOf } from "../../../playground/publish/web/runtime/name_suggestions.js";
-import { finished } from "../../../playground/publish/web/runtime/waiting.js";
+import { libraryOf } from "../../../playground/publish/web/runtime/complaints.js";
+import { finished } from "../../../playground/publish/web/runtime/context.js";
 
 export { EDITOR_WORDS } from "../../../playground/publish/web/runtime/editor_words.js";
 export { createEditor } from "../../../playground/publish/web/runtime/editor.js";
-export { createGuard, keyOf } from "../../../playground/publish/web/runtime/last_good.js";
+export { createGuard, keyOf } from "../../../playground/publish/web/runtime/recovery.js";
 export { createRecovery } from "../../../playground/publish/web/runtime/recovery.js";
 
 const HEAD = ["#version 300 es", "precision highp float; precision highp int; uniform float level;"];

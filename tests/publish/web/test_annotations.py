@@ -21,7 +21,7 @@ def written(node: Node, *raw: str) -> list[dict[str, Any]]:
         {"code": text.partition("//")[0].rstrip(), "raw": text, "file": FILE, "line": number}
         for number, text in enumerate(raw, 1)
     ]
-    values = node.call("annotations.js", "writtenParameters", lines, FILE)
+    values = node.call("written_parameters.js", "writtenParameters", lines, FILE)
     assert isinstance(values, list)
     return values
 

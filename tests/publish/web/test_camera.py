@@ -76,7 +76,7 @@ def test_directions_are_the_same_to_the_last_bit(node: Node):
     rng = np.random.default_rng(2)
     directions = [*rng.uniform(-1000, 1000, (1000, 2)).tolist()]
     directions += [[a, e] for a in range(-720, 721, 45) for e in range(-90, 91, 45)]
-    result = node.each("directions.js", "unitVector", [[each] for each in directions])
+    result = node.each("camera.js", "unitVector", [[each] for each in directions])
     assert result == [list(unit_vector(each)) for each in directions]
 
 

@@ -44,7 +44,7 @@ const written = /(uniform|const) +int +shape( = .)?/;
 const declared = ({ texts: [, text] }) => written.exec(text)[0].replace(/ +/g, " ");
 return [all.map(declared).sort(), all.filter(({ program }) => used.has(program)).map(declared)]"""
 AFTER = """async (around, states, load) => {
-  const { createChosen } = await load("chosen.js"), asked = [];
+  const { createChosen } = await load("kernels.js"), asked = [];
   const programs = {
     ask: () => asked[asked.push({ state: states[asked.length], chosen: new Map() }) - 1],
     touch: () => {}, isDone: ({ state }) => state !== "asked", finish: ({ state }) => state === "ready",
@@ -71,7 +71,7 @@ def test_choices_are_written_as_the_engine_writes_them(node: Node):
         choices += [(f"wired_{each.name}", 1) for each in kernel.inputs] + [("k_unwired", 0)]
         cases.append((name, wrap(kernel, FRAGMENT), choices))
     script = """async (cases, load) => {
-      const { withChoices } = await load("chosen.js");
+      const { withChoices } = await load("kernels.js");
       return cases.map(([text, choices]) => withChoices(text, choices));
     }"""
     stages = [

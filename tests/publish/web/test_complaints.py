@@ -54,7 +54,7 @@ def logs() -> dict[str, str]:
 
 
 def test_the_module_of_words_is_up_to_date():
-    assert complaint_words.FILE.read_text(encoding="utf-8") == complaint_words.module()
+    assert complaint_words.FILE.read_text(encoding="utf-8") == complaint_words.text()
 
 
 @pytest.mark.parametrize("name", PLANTED)
@@ -117,7 +117,7 @@ def test_likeness_is_difflib_s(node: Node):
     words = ["".join(pick.choices("abcd_", k=pick.randrange(1, 14))) for _ in range(600)]
     pairs = list(zip(words[::2], words[1::2], strict=True))
     result = node.run(
-        "async (all, load) => { const { likeness } = await load('name_suggestions.js');"
+        "async (all, load) => { const { likeness } = await load('complaints.js');"
         " return all.map(([a, b]) => likeness(a, b)); }",
         pairs,
     )
@@ -129,7 +129,7 @@ def test_a_page_knows_what_its_library_defines(node: Node):
         "noise/a.glsl": "float fall(vec2 p) {}\nvec3 rise(\n",
         "b.glsl": '#pragma kernel(output = "x:r32f")\nfloat kernel(ivec2 t) {}',
     }
-    result = node.call("name_suggestions.js", "libraryOf", {**files, "./own.glsl": "float mine() {}"})
+    result = node.call("complaints.js", "libraryOf", {**files, "./own.glsl": "float mine() {}"})
     assert result == {"fall": '`#include "noise/a.glsl"`', "rise": '`#include "noise/a.glsl"`'}
 
 

@@ -37,7 +37,7 @@ float kernel(ivec2 texel) { return level; }
 )
 def test_what_python_reads_is_noticed(node: Node, old: str, new: str, result: list[tuple[str, list[str]]]):
     assert old in HEADER
-    said = node.call("notices.js", "notices", HEADER, HEADER.replace(old, new))
+    said = node.call("sketch_files.js", "notices", HEADER, HEADER.replace(old, new))
     assert [(item["key"], item["names"]) for item in said] == result
 
 
@@ -67,7 +67,7 @@ def test_files_are_in_groups_own_ones_first(node: Node):
 
 
 GUARD = """async (steps, refuse, load) => {
-    const { createGuard } = await load("last_good.js");
+    const { createGuard } = await load("recovery.js");
     const kept = new Map(), tab = { name: "" };
     const storage = refuse === "storage" || refuse === "both" ? null : {
         getItem: (key) => kept.get(key) ?? null, removeItem: (key) => kept.delete(key),
@@ -116,16 +116,16 @@ def test_another_page_s_texts_are_left_alone(node: Node):
 
 
 def test_a_key_follows_the_texts(node: Node):
-    keys = [node.call("last_good.js", "keyOf", "s", files) for files in ({"a": "1"}, {"a": "2"}, {"b": "1"})]
+    keys = [node.call("recovery.js", "keyOf", "s", files) for files in ({"a": "1"}, {"a": "2"}, {"b": "1"})]
     assert len(set(keys)) == 3
-    assert node.call("last_good.js", "keyOf", "s", {"a": "1", "b": "2"}) == node.call(
-        "last_good.js", "keyOf", "s", {"b": "2", "a": "1"}
+    assert node.call("recovery.js", "keyOf", "s", {"a": "1", "b": "2"}) == node.call(
+        "recovery.js", "keyOf", "s", {"b": "2", "a": "1"}
     )
 
 
 # A clock and a player whose pictures take a constant and a fraction of their pixels, the first 30 s besides.
 PACED = """async (constant, perPixel, limit, load) => {
-    const { estimate, smallerFrame } = await load("pace.js");
+    const { estimate, smallerFrame } = await load("recovery.js");
     let clock = 0;
     const drawn = [], state = { frame: [640, 360] };
     const renderSoon = async () => {

@@ -31,7 +31,7 @@ def stages_of(kernel: Kernel) -> list[str]:
 
 
 def es(node: Node, text: str, **options: object) -> str:
-    result = node.call("es.js", "toES", text, options)
+    result = node.call("kernel_texts.js", "toES", text, options)
     assert isinstance(result, str)
     assert result.count("\n") == text.count("\n"), "a line moved"
     return result
@@ -41,7 +41,7 @@ def test_every_program_of_the_library_compiles_as_es(node: Node, ctx: moderngl.C
     if "GL_ARB_ES3_compatibility" not in ctx.extensions:
         pytest.skip("this driver compiles no GLSL ES")
     texts = [text for kernel in kernels().values() for text in stages_of(kernel)]
-    result = node.each("es.js", "toES", [[text] for text in texts])
+    result = node.each("kernel_texts.js", "toES", [[text] for text in texts])
     for name, vertex, fragment in zip(kernels(), result[::2], result[1::2], strict=True):
         try:
             ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
@@ -80,7 +80,9 @@ def test_what_packs_numbers_compiles_as_es(node: Node, ctx: moderngl.Context, tm
 def test_es_lines_differ_in_version_precision_and_initial_value(node: Node):
     texts = [text for kernel in kernels().values() for text in stages_of(kernel)]
     initialised = 0
-    for text, result in zip(texts, node.each("es.js", "toES", [[text] for text in texts]), strict=True):
+    for text, result in zip(
+        texts, node.each("kernel_texts.js", "toES", [[text] for text in texts]), strict=True
+    ):
         before, after = text.split("\n"), result.split("\n")
         assert len(before) == len(after)
         assert (before[0], after[0]) == ("#version 330", "#version 300 es")

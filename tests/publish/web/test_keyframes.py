@@ -16,7 +16,7 @@ from playground.sketch.keyframes import EASES, Track
 from .node import Node
 
 TRACKS = """async (tracks, times, load) => {
-    const { valueAt } = await load("keyframes.js");
+    const { valueAt } = await load("with_keyframes.js");
     return tracks.map((track) => times.map((time) => valueAt(track, time)));
 }"""
 
@@ -67,7 +67,7 @@ def test_tracks_of_every_kind_give_the_same_to_the_last_bit(node: Node):
 
 def test_what_follows_a_direction_does_so_until_it_is_set(node: Node):
     script = """async (rules, values, load) => {
-        (await load("follows.js")).follow(rules, values);
+        (await load("values.js")).follow(rules, values);
         return values;
     }"""
     rules = [
@@ -108,7 +108,7 @@ def test_the_sizes_that_a_kernel_takes_are_the_same(node: Node, accepts: str):
     sizes = [(chance.choice(sides), chance.choice(sides)) for _ in range(150)]
     sizes += [(side, side) for side in sides]
     accepted = accepted_runs(accepts)
-    result = node.each("accepts.js", "nearestAccepted", [(accepted, size) for size in sizes])
+    result = node.each("plan.js", "nearestAccepted", [(accepted, size) for size in sizes])
     for size, near in zip(sizes, result, strict=True):
         assert (near == [list(size)]) == expressions.is_accepted(accepts, size)
         assert near == [list(item) for item in expressions.nearest_accepted(accepts, size)]

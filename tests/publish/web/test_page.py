@@ -129,7 +129,7 @@ def test_it_is_read_as_it_was_written(node: Node, evil: dict[str, Any]):
     texts = Elements(page_of(evil)).texts
     script = """async (texts, keys, load) => {
         const { unpacked, unpackedText } = await load("packed.js");
-        const { readPage } = await load("page_file.js");
+        const { readPage } = await load("packed.js");
         const data = (await unpackedText(texts["playground-packed"])).split("\\0")[1];
         const elements = keys.map((key) => ({ dataset: { blob: key }, textContent: texts[key] }));
         const page = readPage({

@@ -28,7 +28,7 @@ from .pages import VIEW
 pytestmark = pytest.mark.slow
 
 EYE = (210.0, 30.0, 9000.0, 2000.0, 1800.0, 100.0, 35.0)
-SETTLED = 0.4  # [s] of page_address.js
+SETTLED = 0.4  # [s] of address.js
 LINK = "camera=" + ",".join(f"{number:g}" for number in EYE)
 INFO = "document.querySelector('.info').textContent"
 

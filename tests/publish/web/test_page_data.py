@@ -29,7 +29,7 @@ from ...shipped import EACH_KIND, of_each_kind, slow_but
 from .node import Node
 
 STAGES = """async (shared, kernels, load) => {
-    const { flatten } = await load("source.js"), { stageText } = await load("wrap.js");
+    const { flatten } = await load("source.js"), { stageText } = await load("kernel_texts.js");
     return kernels.map(({ kernel, stage, file }) => stageText(stage, flatten(shared, file)));
 }"""
 

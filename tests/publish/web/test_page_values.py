@@ -150,7 +150,7 @@ def test_tidied_numbers_are_pythons(node: Node):
 def test_colours_are_pythons(node: Node):
     bytes_ = [f"#{i:02x}{255 - i:02x}{(7 * i) % 256:02x}" for i in range(256)]
     script = """async (texts, load) => {
-        const { fromHex, toHex } = await load("colours.js");
+        const { fromHex, toHex } = await load("numbers.js");
         return texts.map((text) => {
             const [linear, raw] = [fromHex(text), fromHex(text, true)];
             return [linear, toHex(linear), raw, toHex(raw, true)];
@@ -161,20 +161,20 @@ def test_colours_are_pythons(node: Node):
         assert raw == list(parse_hex(text, raw=True))
         assert back == raw_back == text
     lights = np.linspace(0, 1, 1001)
-    shown = node.run("async (n, load) => n.map((await load('colours.js')).toShown)", lights.tolist())
+    shown = node.run("async (n, load) => n.map((await load('numbers.js')).toShown)", lights.tolist())
     np.testing.assert_allclose(shown, linear_to_srgb(lights), rtol=4e-16, atol=1e-16)
-    back = node.run("async (n, load) => n.map((await load('colours.js')).toLinear)", lights.tolist())
+    back = node.run("async (n, load) => n.map((await load('numbers.js')).toLinear)", lights.tolist())
     np.testing.assert_allclose(back, srgb_to_linear(lights), rtol=4e-16, atol=1e-16)
     mixed = RANDOM.uniform(-0.1, 1.1, (200, 4)).tolist()
     script = (
-        "async (n, load) => { const { toHex } = await load('colours.js'); return n.map((c) => toHex(c)); }"
+        "async (n, load) => { const { toHex } = await load('numbers.js'); return n.map((c) => toHex(c)); }"
     )
     assert node.run(script, mixed) == [to_hex(colour) for colour in mixed]
 
 
 @pytest.mark.parametrize("text", ["", "#12", "#1234", "#gggggg", "red", "#123456789", "123456"])
 def test_what_is_no_colour_is_none(node: Node, text: str):
-    assert node.run("async (t, load) => (await load('colours.js')).fromHex(t)", text) is None
+    assert node.run("async (t, load) => (await load('numbers.js')).fromHex(t)", text) is None
 
 
 def test_values_as_text_are_what_python_reads(node: Node):
@@ -182,7 +182,7 @@ def test_values_as_text_are_what_python_reads(node: Node):
     chosen = [p for p in parameters() if p[2].widget.kind not in ("file", "button")]
     asked = [[data, some_value(parameter)] for _, _, parameter, data in chosen for _ in range(3)]
     script = """async (asked, load) => {
-        const { fits, read, toml, write } = await load("value_text.js");
+        const { fits, read, toml, write } = await load("numbers.js");
         return asked.map(([one, value]) => [
             write(one, value), toml(one, value), read(one, write(one, value)), fits(one, value)]);
     }"""
@@ -207,7 +207,7 @@ def test_values_out_of_range_are_refused_as_python_refuses_them(node: Node):
     asked += [
         [parameters()[0][3], text] for text in ("", "x", "1,2,3,4,5,6", "[]", "{}", "__proto__", "1e999")
     ]
-    script = "async (asked, load) => { const { read } = await load('value_text.js');"
+    script = "async (asked, load) => { const { read } = await load('numbers.js');"
     script += " return asked.map(([one, text]) => read(one, text) === undefined); }"
     refused = node.run(script, asked)
     assert [text for (_, text), no in zip(asked, refused, strict=True) if not no] == []
@@ -218,7 +218,7 @@ def test_values_out_of_range_are_refused_as_python_refuses_them(node: Node):
 
 def test_a_dome_is_the_windows(node: Node):
     places = RANDOM.uniform(-1.3, 1.3, (100, 2)).tolist()
-    script = "async (n, load) => { const { directionAt, dotOf } = await load('pads.js');"
+    script = "async (n, load) => { const { directionAt, dotOf } = await load('controls.js');"
     script += " return n.map(([x, y]) => [directionAt(x, y), dotOf(...directionAt(x, y))]); }"
     for position, (direction, dot) in zip(places, node.run(script, places), strict=True):
         np.testing.assert_allclose(direction, dome.direction_at(*position), rtol=1e-12, atol=1e-12)
@@ -228,7 +228,7 @@ def test_a_dome_is_the_windows(node: Node):
 def test_page_gestures_move_camera_like_window_mouse(node: Node):
     extent, relief, size = (4096.0, 3000.0), 800.0, (960, 540)
     script = """async (camera, eye, across, down, wheel, load) => {
-        const { moved, turned, zoomed } = await load("camera_moves.js");
+        const { moved, turned, zoomed } = await load("camera.js");
         const pan = moved(camera, eye, camera.field_of_view, across, down);
         return [turned(camera, across, down), pan, zoomed(camera, eye, wheel)];
     }"""
@@ -261,14 +261,14 @@ def test_a_narrow_room_opens_the_view_as_in_the_window(node: Node):
         ((960, 540), (960, 540)),
         ((800, 600), (10, 900)),
     ]
-    script = "async (n, load) => { const { fieldFor } = await load('camera_moves.js');"
+    script = "async (n, load) => { const { fieldFor } = await load('camera.js');"
     script += " return n.map(([wanted, room]) => fieldFor(40, wanted, room)); }"
     assert node.run(script, rooms) == pytest.approx([field_for(40.0, *room) for room in rooms], rel=1e-12)
 
 
 def test_a_drag_with_ctrl_moves_a_sun_as_in_the_window(node: Node):
     drags = RANDOM.uniform((-10, -10, -3, -3), (370, 90, 3, 3), (50, 4)).tolist()
-    script = "async (n, load) => { const { sunMoved } = await load('camera_moves.js');"
+    script = "async (n, load) => { const { sunMoved } = await load('camera.js');"
     script += " return n.map(([a, e, across, up]) => sunMoved([a, e], across, up)); }"
     expected = [list(turned_sun((a, e), across, up)) for a, e, across, up in drags]
     np.testing.assert_allclose(node.run(script, drags), expected, atol=0.0100001)

@@ -16,7 +16,7 @@ from .node import Node
 SIZE = (200, 100)  # [pixels] of the picture
 BOX = {"left": 10, "bottom": 70, "width": 100, "height": 50}  # [CSS pixels] of the element
 FOLLOWED = """async (box, size, playing, turns, load) => {
-  const { followPointer } = await load("pointer.js"), element = new EventTarget();
+  const { followPointer } = await load("steering.js"), element = new EventTarget();
   element.getBoundingClientRect = () => box;
   const clock = performance.now;
   let changes = 0, now = 10_000;
@@ -107,9 +107,9 @@ def test_frame_delta_is_sent_while_playing_except_after_pauses(node: Node):
                        ([["iTime", "time"]], False), (None, False)])  # fmt: skip
 def test_what_reads_the_pointer(node: Node, usual: list[list[str]] | None, reads: bool):
     kernels = [{}, {"usual": usual} if usual else {}]
-    assert node.call("pointer.js", "readsPointer", {"kernels": kernels}) is reads
+    assert node.call("steering.js", "readsPointer", {"kernels": kernels}) is reads
 
 
 def test_the_date_is_local_and_its_seconds_those_of_the_day(node: Node):
-    script = """async (load) => (await load("pointer.js")).dateOf(new Date(2026, 1, 28, 13, 5, 6, 250))"""
+    script = """async (load) => (await load("steering.js")).dateOf(new Date(2026, 1, 28, 13, 5, 6, 250))"""
     assert node.run(script) == [2026, 1, 28, 13 * 3600 + 5 * 60 + 6.25]

@@ -9,7 +9,7 @@ from .node import Node
 # Frames of motions one after another: what a frame takes is a part that follows its pixels, and one that
 # does not; the first at a size takes longer, for its textures are made.
 MOTIONS = """async (motions, frames, load) => {
-  const { createQuality } = await load("quality.js"), quality = createQuality();
+  const { createQuality } = await load("figure_map.js"), quality = createQuality();
   return motions.map(([pixels, fixed]) => {
     const found = [];
     quality.begin();

@@ -77,7 +77,7 @@ def test_every_moment_shows_the_engines_texels(
         if kind == "video":
             playing["speed"] = chance.choice([1.0, -1.0, 2.0, 0.5])
         time = chance.randint(0, 300) / 60
-        result = node.call("recordings.js", "blobAt", texture, playing, time)
+        result = node.call("player.js", "blobAt", texture, playing, time)
         moment = registered.moment(values | playing, Now(time, LiveInputs()))
         [texels] = registered.make(values | playing, tuple(texture["size"]), moment).values()
         assert bytes_of(page, result) == texels.tobytes(), (playing, time)

@@ -14,7 +14,7 @@ from .texts import kernels
 
 def declared(node: Node, *codes: str) -> dict[str, object]:
     lines = [{"code": code, "file": "./a.glsl", "line": i} for i, code in enumerate(codes, 1)]
-    return {each["name"]: each["value"] for each in node.call("uniforms.js", "declaredUniforms", lines)}
+    return {each["name"]: each["value"] for each in node.call("source.js", "declaredUniforms", lines)}
 
 
 def initial_of(parameter: Parameter) -> object:

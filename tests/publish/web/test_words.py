@@ -13,7 +13,7 @@ TABLES = {
     "page_words.js": "PAGE_WORDS",
     "editor_words.js": "EDITOR_WORDS",
     "book_words.js": "BOOK_WORDS",
-    "notebook_words.js": "NOTEBOOK_WORDS",
+    "notebook_sketch.js": "NOTEBOOK_WORDS",
 }
 FILES = {
     path: path.read_text("utf-8") for path in RUNTIME.glob("*.js") if not path.name.endswith("_words.js")
@@ -21,13 +21,15 @@ FILES = {
 
 BY_NAME = {
     "editor.js": ("broken", "edited"),
-    "keys.js": (
+    "sketch_page.js": (
         *("keyFrame", "keyFull", "keyHelp", "keyMap", "keyPanel"),
         *("keyPlay", "keyResetView", "keySave", "keyStart"),
     ),
-    "notices.js": ("header", "annotation", "initial", "added", "removed"),
     "session.js": ("size", "extent", "relief", "base_elevation"),
-    "sketch_files.js": ("ownFiles", "kernelFiles", "libraryFiles"),
+    "sketch_files.js": (
+        *("ownFiles", "kernelFiles", "libraryFiles"),
+        *("header", "annotation", "initial", "added", "removed"),
+    ),
 }
 """The words that are chosen while a page runs, by ``words[…]``, and the file that names them."""
 

@@ -18,7 +18,7 @@ from .texts import kernels, shared_files
 
 
 def made(node: Node, recipe: Recipe, folder: Path, file: str) -> dict[str, object]:
-    script = """async (stage, shared, file, load) => (await load("wrap.js")).stageText(
+    script = """async (stage, shared, file, load) => (await load("kernel_texts.js")).stageText(
       stage, (await load("source.js")).flatten(shared, file))"""
     values = node.run(script, stage_data(recipe), shared_files(folder, "./"), file)
     assert isinstance(values, dict)
@@ -28,7 +28,7 @@ def made(node: Node, recipe: Recipe, folder: Path, file: str) -> dict[str, objec
 @pytest.mark.slow
 def test_every_program_of_the_library(node: Node):
     script = """async (stages, shared, load) => {
-      const { stageText } = await load("wrap.js"), { flatten } = await load("source.js");
+      const { stageText } = await load("kernel_texts.js"), { flatten } = await load("source.js");
       return stages.map(([stage, file]) => stageText(stage, flatten(shared, file)));
     }"""
     recipes = [

@@ -1,6 +1,7 @@
 // address.js -- what differs from a sketch, as the end of an address, read with care; as TOML; as words.
 
-import { quoted, read, shellWord, toml, write } from "./value_text.js";
+import { quoted, read, shellWord, toml, write } from "./numbers.js";
+import { terrainRows } from "./session.js";
 
 /** @typedef {import("./schema.js").Value} Value */
 /** @typedef {import("./schema.js").Camera} Camera */
@@ -115,4 +116,44 @@ function listed(session) {
     const row = session.row(path);
     return row ? [/** @type {[Shown, Value]} */ ([row, value])] : [];
   });
+}
+
+// ── Keeps a page's address as its session is, and the session as the address says.
+
+const SETTLED = 400; // [ms] without a change until the address says it
+
+/** @param {Session} session @param {() => boolean} hasTime whether the time is one that a user has chosen
+ *  @param {(names: string[]) => void} refused */
+export function followAddress(session, hasTime, refused) {
+  let settling = 0;
+  const now = () => fragmentOf(session, { time: hasTime() });
+
+  function write() {
+    const text = now();
+    try {
+      history.replaceState(null, "", text ? `#${text}` : location.pathname + location.search);
+    } catch { /* the browser keeps the address of this page as it is */ }
+  }
+
+  function read() {
+    /** @param {import("./schema.js").Sketch} sketch */
+    const rowsOf = (sketch) => [...sketch.shown, ...terrainRows(sketch)];
+    const link = readFragment(location.hash, session.sketches, rowsOf);
+    session.begin(link);
+    if (link.refused.length) refused(link.refused);
+  }
+
+  session.follow((news) => {
+    if (news === "time" && !hasTime()) return;
+    clearTimeout(settling);
+    settling = setTimeout(write, SETTLED);
+  });
+  addEventListener("hashchange", () => {
+    if (location.hash.slice(1) !== now()) read();
+  });
+  return {
+    read,
+    /** The page's address with what differs. */
+    link: () => [location.href.split("#")[0], now()].filter(Boolean).join("#"),
+  };
 }

@@ -1,6 +1,6 @@
 // binder.js -- binds what a program reads: given names, parameters, textures with their samplers.
 
-import { unitVector } from "./directions.js";
+import { unitVector } from "./camera.js";
 import { setUniform } from "./programs.js";
 
 /** What an input reads: a texture, and the result that it is part of.
@@ -17,7 +17,7 @@ const CONSTANTS = { white: [255, 255, 255, 255], black: [0, 0, 0, 255], zero: [0
 export const PLAIN = { filter: "nearest", wrap: "clamp", mipmap: false };
 
 /** @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures
- *  @param {import("./images.js").Images} images */
+ *  @param {import("./textures.js").Images} images */
 export const createBinder = (context, textures, images) => {
   const { gl, make, drop } = context;
   /** @type {Map<string, WebGLSampler>} */

@@ -2,15 +2,14 @@
 
 import "./with_all.js";
 import { openBook, settled } from "./book_data.js";
-import { liveFigure } from "./book_figure.js";
-import { liveCompare, liveSlider, liveSteps } from "./book_series.js";
 import { liveChallenge, liveExercise } from "./book_exercise.js";
-import { liveBreak } from "./book_tasks.js";
-import { createBookRecovery } from "./book_recovery.js";
+import { createBookRecovery, liveFigure } from "./book_figure.js";
+import { liveCompare, liveSlider, liveSteps } from "./book_series.js";
+import { liveBreak } from "./book_text.js";
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
-import { lackOf } from "./lacks.js";
+import { lackOf } from "./recovery.js";
 
 /** @typedef {import("./book_figure.js").Room} Room */
 
@@ -25,7 +24,7 @@ const BYTES = 192 * 2 ** 20; // of textures for all figures of a page: those see
 /** @type {ReturnType<typeof openBook> | null} */
 let book = null;
 /** @typedef {{engine: import("./engine.js").Engine,
- *             losses: import("./book_recovery.js").BookRecovery}} Opened */
+ *             losses: import("./book_figure.js").BookRecovery}} Opened */
 /** One context for all figures of the page. @type {Promise<Opened> | null} */
 let opened = null;
 

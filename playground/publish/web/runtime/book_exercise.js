@@ -1,15 +1,12 @@
 // book_exercise.js -- what a reader of a book sets or writes, checked where it is read; a picture to match.
 
 import { makePicture, makeReset, makeRows } from "./book_figure.js";
-import { makeVerdict } from "./book_tasks.js";
-import { createText } from "./book_text.js";
+import { createText, makeVerdict } from "./book_text.js";
 import { button, make } from "./dom.js";
-import { createCheck } from "./picture_check.js";
 import { createSession } from "./session.js";
 import { fill } from "./words.js";
+import { createCheck, createJudge, createScore, sentence } from "./work_check.js";
 import { followParameters } from "./written_parameters.js";
-import { createJudge, createScore } from "./work_check.js";
-import { sentence } from "./work_words.js";
 
 /** @typedef {import("./book_figure.js").Room} Room */
 /** @typedef {import("./work_check.js").Outcome} Outcome */

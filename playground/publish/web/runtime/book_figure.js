@@ -1,11 +1,70 @@
 // book_figure.js -- a live picture in the text of a book, what can be dragged of it, its time.
 
+import { bookWords } from "./book_words.js";
 import { makeRow, whyLocked } from "./controls.js";
 import { button, make } from "./dom.js";
 import { createFigure } from "./figure.js";
 import { labelOf } from "./labels.js";
+import { createRecovery } from "./recovery.js";
 import { createSession } from "./session.js";
 import { createTimeline, hasTime } from "./timeline.js";
+
+// ── When the one context of many figures is lost: each stands still, says why, and goes on.
+
+/** @typedef {import("./figure.js").Figure} Figure */
+/** @typedef {import("./recovery.js").Guard} Guard */
+/** @typedef {ReturnType<typeof createBookRecovery>} BookRecovery */
+
+/** What keeps the texts of an editor, and what puts one back into it.
+ *  @typedef {{guard?: Guard, reopen?: (text: string, file: string) => void}} Edits */
+
+/** What a live block has of it.
+ *  @typedef {object} Watched
+ *  @property {import("./recovery.js").Recovery} recovery
+ *  @property {(figure: Figure) => void} add   a figure whose picture is to come back
+ *  @property {(edits: Edits) => void} edit    the block has an editor
+ *  @property {() => void} end */
+
+/** Watch an engine whose figures are in several places of a page.
+ *  @param {import("./engine.js").Engine} engine @param {string} language */
+export function createBookRecovery(engine, language) {
+  /** @type {Promise<void> | null} all wait for the same */
+  let restoring = null;
+  const restore = () => {
+    restoring ??= engine.restore().finally(() => { restoring = null; });
+    return restoring;
+  };
+
+  return {
+    /** Watch for a block; sentences appear in its element.
+     *  @param {HTMLElement} host @returns {Watched} */
+    watch(host) {
+      /** @type {Edits} */
+      let edits = {};
+      /** @type {Figure[]} */
+      const figures = [];
+      const poster = (/** @type {boolean} */ still) => {
+        for (const figure of figures) {
+          figure.showPoster(still);
+          if (!still) figure.ask();
+        }
+      };
+      const recovery = createRecovery(host, {
+        words: bookWords(language), poster, guard: () => edits.guard,
+        reopen: (text, file) => edits.reopen?.(text, file),
+      });
+      const player = () => /** @type {any} */ (figures[0]?.player ?? null);
+      const end = recovery.watch(engine.canvas, { restore, player });
+      return {
+        recovery, end,
+        add: (figure) => { figures.push(figure); },
+        edit: (made) => { edits = made; },
+      };
+    },
+  };
+}
+
+// ── A live picture in the text of a book, what can be dragged of it, its time
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./session.js").Session} Session */
@@ -18,7 +77,7 @@ import { createTimeline, hasTime } from "./timeline.js";
  *  @property {Sketch[]} sketches                of its scenes
  *  @property {Sketch | null} begin              of an exercise
  *  @property {import("./engine.js").Engine} engine
- *  @property {import("./book_recovery.js").Watched} watched   speaks for its figures when the context is lost
+ *  @property {Watched} watched   speaks for its figures when the context is lost
  *  @property {Object<string, string>} words
  *  @property {Object<string, string>} [say]         of works that are checked: [tasks] of course/labels
  *  @property {boolean} comma                    whether numbers have one */

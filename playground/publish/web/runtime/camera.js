@@ -5,7 +5,56 @@
 // takes them, column after column. The same operations in the same order as Python's, so that both have the
 // same matrices to the last bit.
 
-import { cosSin } from "./directions.js";
+import { clamp } from "./numbers.js";
+
+// ── Turns directions on the terrain into vectors: engine/camera.py.
+//
+// Sums and products alone, in the order of Python's: no two libraries of mathematics agree on the last bit
+// of a sine.
+
+const SINE = taylor(1, 9);
+const COSINE = taylor(0, 10);
+
+/** The unit vector (east, north, up) of an azimuth, clockwise from north, and an elevation [degrees].
+ *  Exact at quarter turns, as glsl/lighting/sun.glsl is.
+ *  @param {number[]} direction @returns {[number, number, number]} */
+export function unitVector([azimuth, elevation]) {
+  const [north, east] = cosSin(azimuth);
+  const [level, up] = cosSin(elevation);
+  return [east * level, north * level, up];
+}
+
+/** The cosine and the sine of an angle; exact at quarter turns.
+ *  @param {number} degrees @returns {[number, number]} */
+export function cosSin(degrees) {
+  const rest = degrees % 360;
+  const quarters = Math.floor(rest / 90 + 0.5);
+  const x = (rest - 90 * quarters) * (Math.PI / 180);
+  const c = series(COSINE, x * x), s = x * series(SINE, x * x);
+  switch (quarters & 3) {
+    case 0: return [c, s];
+    case 1: return [-s, c];
+    case 2: return [-c, -s];
+    default: return [s, -c];
+  }
+}
+
+/** The factors of Taylor's series of a sine, of odd powers, or a cosine, of even ones.
+ *  @param {number} power @param {number} count */
+function taylor(power, count) {
+  let factorial = 1;
+  return Array.from({ length: count }, (_, n) => {
+    if (n) factorial *= (2 * n + power - 1) * (2 * n + power);
+    return (n % 2 ? -1 : 1) / factorial;
+  });
+}
+
+/** @param {number[]} factors @param {number} x */
+function series(factors, x) {
+  return factors.reduceRight((sum, factor) => sum * x + factor, 0);
+}
+
+// ── Turns a camera that orbits the terrain into matrices
 
 /** @typedef {import("./schema.js").Camera} Camera */
 /** @typedef {[number, number, number]} Vector */
@@ -139,4 +188,45 @@ function columnsOf(matrix) {
 /** @param {number[]} parts */
 function length(...parts) {
   return Math.sqrt(parts.reduce((sum, part) => sum + part * part, 0));
+}
+
+// ── What gestures make of a camera and a sun, as workbench/camera_drag.py and others.
+
+/** [degrees] that a drag over the picture's whole height turns the terrain. */
+const HALF_TURN = 180;
+/** How much nearer one notch of the wheel brings the eye. */
+export const NOTCH = 0.88;
+const MAX_FIELD_OF_VIEW = 100; // [degrees] that a view is opened to at most
+const MIN_SUN_ELEVATION = -10; // [degrees] of a sun, below the horizon
+const DEGREE = Math.PI / 180;
+
+/** @param {Camera} camera @param {number} across @param {number} down shares of the picture's height */
+export const turned = (camera, across, down) => orbit(camera, across * HALF_TURN, down * HALF_TURN);
+
+/** @param {Camera} camera @param {Eye} eye of the picture that is shown
+ *  @param {number} field its vertical field of view
+ *  @param {number} across @param {number} down */
+export const moved = (camera, eye, field, across, down) => ({
+  ...pan({ ...camera, field_of_view: field }, eye, -across, down),
+  field_of_view: camera.field_of_view,
+});
+
+/** @param {Camera} camera @param {Eye} eye @param {number} notches nearer */
+export const zoomed = (camera, eye, notches) => zoom(camera, NOTCH ** notches, eye.distance);
+
+/** The vertical field of view that shows in a room what a picture shows from side to side.
+ *  @param {number} degrees @param {[number, number]} wanted @param {[number, number]} room pixels */
+export function fieldFor(degrees, wanted, room) {
+  const narrower = wanted[0] / wanted[1] / (room[0] / Math.max(room[1], 1));
+  if (narrower <= 1) return degrees;
+  const opened = (2 * Math.atan(Math.tan((degrees * DEGREE) / 2) * narrower)) / DEGREE;
+  return Math.max(degrees, Math.min(opened, MAX_FIELD_OF_VIEW));
+}
+
+/** A direction after a drag, to the right and upwards in shares of the picture's height.
+ *  @param {number[]} sun azimuth, elevation @param {number} across @param {number} up
+ *  @returns {[number, number]} */
+export function sunMoved(sun, across, up) {
+  const azimuth = (((sun[0] + across * HALF_TURN) % 360) + 360) % 360;
+  return [+azimuth.toFixed(2), clamp(+(sun[1] + (up * HALF_TURN) / 2).toFixed(2), MIN_SUN_ELEVATION, 90)];
 }

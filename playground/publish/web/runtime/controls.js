@@ -1,13 +1,190 @@
 // controls.js -- a row of the panel for each parameter: its label, what changes it, its reset.
 
-import { fromHex, toHex } from "./colours.js";
-import { button, make } from "./dom.js";
-import { LONG, numberLine } from "./number_line.js";
-import { partNames, unitOf } from "./numbers.js";
-import { axesOf, makePad } from "./pads.js";
-import { WIDGETS } from "./widgets.js";
+import { button, make, svg } from "./dom.js";
+import {
+  clamp, dragSpeed, fromHex, isLog, isWhole, partNames, rangeOf, scaleOf, snapped, tidied, toHex, unitOf,
+  WIDGETS, written,
+} from "./numbers.js";
+
+// ── One number of a parameter: a field, and a slider where it has a range, else a drag.
 
 /** @typedef {import("./schema.js").Shown} Shown */
+
+/** @typedef {object} Line
+ *  @property {number} part                    which number of the parameter
+ *  @property {() => number} largest           of its vector: how fast a drag without a range goes
+ *  @property {(number: number) => void} changed
+ *  @property {string} [name]                  of the part
+ *  @property {string} [unit]                  as it follows the number */
+
+const STEPS = 1000; // of a slider without steps of its own
+const PAD = 500; // pixels of a drag through the range of a number that has a pad instead of a slider
+/** Letters from which on a unit is written after the label, and not after the number. */
+export const LONG = 4;
+
+/** @param {Shown} one @param {Line} line */
+export function numberLine(one, { part, largest, changed, name = "", unit = unitOf(one) }) {
+  const { control, limits } = WIDGETS[one.widget], whole = isWhole(one.type);
+  const range = limits?.[part] ?? rangeOf(one, part);
+  const scale = ["direction", "point"].includes(control) ? null : scaleOf(one, part); // those have a pad
+  const span = range ? range[1] - range[0] : 0;
+  const field = make("input", { type: "text", inputMode: "decimal", className: "number" });
+  field.autocomplete = "off";
+  const element = make("label", { className: "part" });
+  if (name) element.append(make("span", { className: "part-name" }, name));
+  let now = 0;
+
+  function set(/** @type {number} */ number) {
+    if (!Number.isFinite(number)) return show(now);
+    const held = range ? clamp(number, ...range) : number;
+    return changed(whole ? Math.round(held) : tidied(held));
+  }
+
+  const own = !isLog(one.widget) && (one.step || (whole && span <= STEPS ? 1 : 0));
+  const step = own ? own / span : 1 / STEPS;
+  const slider = scale && make("input", { type: "range", min: 0, max: 1, step });
+  if (slider) {
+    slider.oninput = () => changed(scale.value(+slider.value));
+    element.append(slider);
+  } else {
+    element.classList.add("free");
+    whileDragged(element, (by) => {
+      const speed = span ? span / PAD : dragSpeed(one, largest());
+      set(snapped(one, now + by * speed, part));
+    });
+  }
+  element.append(field);
+
+  field.onchange = () => set(Number(field.value.replace(",", ".").replace(/[^\d.eE+-]*$/, "") || NaN));
+  field.onkeydown = (event) => {
+    const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+    if (event.key === "Enter") field.select();
+    if (!way) return;
+    event.preventDefault();
+    const by = one.step || (whole ? 1 : scale ? span / STEPS : dragSpeed(one, largest()));
+    set(snapped(one, now + way * by * (event.shiftKey ? 10 : 1), part));
+  };
+
+  function show(/** @type {number} */ number) {
+    now = number;
+    const text = written(one, number, part);
+    field.value = text + (unit.length < LONG ? unit : "");
+    if (!slider || !scale) return;
+    slider.value = String(scale.share(number));
+    slider.style.setProperty("--share", String(scale.share(number)));
+    slider.setAttribute("aria-valuetext", text + unit);
+  }
+  return { element, show, inputs: slider ? [slider, field] : [field] };
+}
+
+/** Drag on a line, but for its field: calls with the pixels gone since the last call.
+ *  @param {HTMLElement} element @param {(by: number) => void} moved */
+function whileDragged(element, moved) {
+  let at = 0;
+  element.onpointerdown = (event) => {
+    if (event.target instanceof HTMLInputElement) return;
+    at = event.clientX;
+    element.setPointerCapture(event.pointerId);
+    event.preventDefault();
+  };
+  element.onpointermove = (event) => {
+    if (!element.hasPointerCapture(event.pointerId) || event.clientX === at) return;
+    moved(event.clientX - at);
+    at = event.clientX;
+  };
+}
+
+// ── Squares to drag a dot in: the sky as a disc for a direction, a rectangle for a point.
+
+/** @typedef {{element: SVGElement, show: (value: number[]) => void}} Pad */
+
+const DEGREE = Math.PI / 180;
+
+/** Where a direction is on the unit disc, right and up: the zenith in its middle, the horizon its rim.
+ *  @param {number} azimuth @param {number} elevation degrees @returns {[number, number]} */
+export function dotOf(azimuth, elevation) {
+  const radius = 1 - clamp(elevation, 0, 90) / 90;
+  return [radius * Math.sin(azimuth * DEGREE), radius * Math.cos(azimuth * DEGREE)];
+}
+
+/** The direction at a place of the unit disc, or at the nearest on its rim.
+ *  @param {number} right @param {number} up @returns {[number, number]} azimuth, elevation in degrees */
+export function directionAt(right, up) {
+  const radius = Math.min(Math.hypot(right, up), 1);
+  return [(Math.atan2(right, up) / DEGREE + 360) % 360, 90 * (1 - radius)];
+}
+
+/** The ranges of a point's two numbers.
+ *  @param {Shown} one @returns {[number, number][]} */
+export const axesOf = (one) => [0, 1].map((part) => rangeOf(one, part) ?? [0, 1]);
+
+/** A number in as many places as a pad can be pointed to.
+ *  @param {number} number @param {[number, number]} range */
+export function rounded(number, [low, high]) {
+  const places = clamp(4 - Math.floor(Math.log10(high - low) + 1e-9), 1, 9);
+  return clamp(+number.toFixed(places), low, high);
+}
+
+/** Make a pad; `changed` gets the new value of each drag.
+ *  @param {Shown} one @param {(value: number[]) => void} changed @returns {Pad} */
+export function makePad(one, changed) {
+  const sky = one.widget === "direction";
+  const dot = svg("circle", { r: 0.11, class: "dot" });
+  const lines = sky
+    ? [1, 2 / 3, 1 / 3].map((r) => svg("circle", { r, class: "line" }))
+    : ["x", "y"].map(() => svg("line", { class: "line" }));
+  const ground = sky
+    ? svg("circle", { r: 1, class: "ground" })
+    : svg("rect", { x: -1, y: -1, width: 2, height: 2, class: "ground" });
+  const ray = svg("line", { class: "ray" });
+  const north = svg("path", { d: "M-.08-.72v-.2l.16.2v-.2", class: "line" });
+  const element = /** @type {SVGElement} */ (
+    svg(
+      "svg",
+      { viewBox: "-1.06 -1.06 2.12 2.12", class: "pad", "aria-hidden": "true" },
+      ground,
+      ...lines,
+      ...(sky ? [north, ray] : []),
+      dot,
+    )
+  );
+  const point = (/** @type {PointerEvent} */ event) => {
+    const box = element.getBoundingClientRect();
+    const right = 2.12 * ((event.clientX - box.left) / box.width - 0.5),
+      up = 2.12 * (0.5 - (event.clientY - box.top) / box.height);
+    if (sky) return directionAt(right, up).map((degrees) => +degrees.toFixed(1));
+    return axesOf(one).map((range, at) =>
+      rounded(range[0] + ((at ? up : right) + 1) * 0.5 * (range[1] - range[0]), range),
+    );
+  };
+  element.onpointerdown = (event) => {
+    if (one.locked || event.button) return;
+    event.preventDefault();
+    element.setPointerCapture(event.pointerId);
+    changed(point(event));
+  };
+  element.onpointermove = (event) => element.hasPointerCapture(event.pointerId) && changed(point(event));
+  const show = (/** @type {number[]} */ value) => {
+    const share = (/** @type {number} */ at) => {
+      const [low, high] = axesOf(one)[at];
+      return (2 * (value[at] - low)) / (high - low) - 1;
+    };
+    const [x, y] = sky ? dotOf(value[0], value[1]) : [share(0), share(1)];
+    const place = (/** @type {Element} */ shape, /** @type {Object<string, number>} */ at) =>
+      Object.entries(at).forEach(([name, number]) => shape.setAttribute(name, String(number)));
+    place(dot, { cx: x, cy: -y });
+    dot.classList.toggle("below", sky && value[1] < 0);
+    if (sky) place(ray, { x2: x, y2: -y });
+    else {
+      place(lines[0], { x1: x, x2: x, y1: -1, y2: 1 });
+      place(lines[1], { y1: -y, y2: -y, x1: -1, x2: 1 });
+    }
+  };
+  return { element, show };
+}
+
+// ── A row of the panel for each parameter
+
 /** @typedef {import("./schema.js").Value} Value */
 /** @typedef {{element: Element, show: (value: any) => void}} Control */
 

@@ -2,8 +2,7 @@
 
 import { createCodeField } from "./code_field.js";
 import { button, copy, make, save } from "./dom.js";
-import { notices } from "./notices.js";
-import { fileGroups } from "./sketch_files.js";
+import { fileGroups, notices } from "./sketch_files.js";
 import { fill } from "./words.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
@@ -168,8 +167,8 @@ export function createEditor(host, player, options) {
   const shortName = () => file.split("/").at(-1) ?? file;
 
   async function copyFile() {
-    const key = (await copy(textOf(file))) ? "fileCopied" : "fileNotCopied";
-    status.textContent = fill(words[key], { name: shortName() });
+    const text = (await copy(textOf(file))) ? words.fileCopied : words.fileNotCopied;
+    status.textContent = fill(text, { name: shortName() });
   }
 
   function saveFile() {

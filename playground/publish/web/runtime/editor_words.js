@@ -69,7 +69,8 @@ export const EDITOR_WORDS = {
     copyFile: "Copier",
     saveFile: "Télécharger",
     fileCopied: "Le texte de {name} est copié",
-    fileNotCopied: "Ce navigateur ne laisse aucune page copier : sélectionnez le texte, et copiez-le à la main",
+    fileNotCopied: "Ce navigateur ne laisse aucune page copier : sélectionnez le texte, et copiez-le à la "
+      + "main",
     fileSaved: "{name} est enregistré",
     unedited: "Comme dans l’esquisse. Ce que vous tapez est compilé aussitôt.",
     compilingText: "Compilation",

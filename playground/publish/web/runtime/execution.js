@@ -3,11 +3,11 @@
 // What an iteration of a loop computes belongs to the loop until its next iteration is done; all else
 // belongs to the cache. A pass inside a loop that does not change with it runs once.
 
-import { failure } from "./context.js";
 import { isSize } from "./binder.js";
+import { failure } from "./context.js";
 import { started } from "./draws.js";
-import { texelsOf } from "./formats.js";
 import { bodyOf, isLoop, readWithLevels, stepsOf } from "./plan_nodes.js";
+import { texelsOf } from "./textures.js";
 
 /** @typedef {import("./plan.js").Plan} Plan */
 /** @typedef {import("./plan_nodes.js").Step} Step */
@@ -28,8 +28,8 @@ import { bodyOf, isLoop, readWithLevels, stepsOf } from "./plan_nodes.js";
  *  @property {import("./textures.js").Textures} textures
  *  @property {import("./kernels.js").Kernels} kernels
  *  @property {ReturnType<typeof import("./draws.js").createDraws>} draws
- *  @property {ReturnType<typeof import("./plain.js").createPlain> | undefined} plain
- *  @property {import("./images.js").Images} images
+ *  @property {ReturnType<typeof import("./with_plain.js").createPlain> | undefined} plain
+ *  @property {import("./textures.js").Images} images
  *  @property {WebGL2RenderingContext} gl
  *  @property {(step: Step, frame: number | null) => Object<string, any>} given
  *  @property {(kernel: import("./schema.js").Kernel) => import("./kernel_texts.js").KernelText} text

@@ -4,22 +4,136 @@
 // more
 // closely fills as small a part of its textures as that takes.
 
-import { failure } from "./context.js";
-import { headerNames, whole } from "./formulas.js";
-import { roundedOutputs } from "./formats.js";
 import { needed } from "./addons.js";
-import { createChosen } from "./chosen.js";
-import { stagesOf } from "./kernel_texts.js";
 import { isSize, PLAIN } from "./binder.js";
+import { failure } from "./context.js";
+import { headerNames, shiftAfter, whole } from "./formulas.js";
+import { stagesOf, toES } from "./kernel_texts.js";
 import { setUniform } from "./programs.js";
-import { createSettling } from "./settling.js";
-import { toES } from "./es.js";
-import { shiftAfter } from "./lattice.js";
+import { roundedOutputs } from "./textures.js";
+
+// ── Programs with what is chosen written in, where a program draws: engine/kernels.py.
+//
+// A software renderer goes both ways of every `if`: what was not chosen costs as much as what was, unless
+// its compiler can see that it never happens. A kernel that is drawn again and again with the same
+// checkboxes, menus and wires gets a program of its own for them, compiled behind the one that is drawn.
+
+/** @typedef {import("./programs.js").Program} Program */
+
+const OFTEN = 3; // draws with the same choices, after which they are written in
+const MAX_PROGRAMS = 8; // programs with choices that are remembered of one without
+
+/** Write checkboxes, menus and what is wired into a stage's text as constants: no line and no column moves.
+ *  @param {string} text @param {[string, number][]} choices names, whole numbers @returns {string} */
+export const withChoices = (text, choices) => {
+  for (const [name, value] of choices) {
+    const pattern = new RegExp(`^([ \\t]*)uniform([ \\t]+(bool|int)[ \\t]+${name}\\b)[^;\\n]*;`, "gm");
+    text = text.replace(pattern, (_, before, declared, type) =>
+      `${before}const  ${declared} = ${type === "bool" ? Boolean(value) : value};`);
+  }
+  return text;
+};
+
+/** What is chosen of a step, and what of it is wired. @param {Job} job @returns {[string, number][]} */
+const choicesOf = ({ step, inputs }) => {
+  const { kernel, values, size } = step;
+  /** @type {[string, number][]} */
+  const found = [];
+  for (const { name, type, widget } of kernel.parameters) {
+    if ((type === "bool" && widget !== "button") || (type === "int" && widget === "menu"))
+      found.push([name, Number(values[name])]);
+  }
+  let unwired = false;
+  for (const { name, fallback } of kernel.inputs) {
+    const wired = inputs.get(name);
+    unwired ||= !wired && !!fallback;
+    found.push([`wired_${name}`, Number(!!wired)]);
+    found.push([`matches_${name}`, Number(!!wired && isSize(wired.texture.size, size))]);
+  }
+  return [...found, ["k_unwired", Number(unwired)]];
+};
+
+/** @param {import("./context.js").Context} context @param {import("./programs.js").Programs} programs
+ *  @param {number} [often]  draws with the same choices until they are written in */
+export const createChosen = ({ software, parallel }, programs, often = OFTEN) => {
+  /** The program to draw a step with: the one that is given, until another is ready.
+   *  @param {Job} job @param {Program} general @returns {Program} */
+  const of = (job, general) => {
+    if (!software || !parallel || job.step.kernel.kind === "plain_fragment") return general;
+    const choices = choicesOf(job), key = choices.join(), { chosen } = general;
+    const found = chosen.get(key) ?? { times: 0, program: null };
+    chosen.delete(key);
+    chosen.set(key, found);
+    if (chosen.size > MAX_PROGRAMS) chosen.delete(/** @type {string} */ (chosen.keys().next().value));
+    if (found.program?.state === "gone") found.program = null;
+    if (!found.program && ++found.times < often) return general;
+    found.program ??= programs.ask(texts(general, choices));
+    programs.touch(found.program);
+    return programs.isDone(found.program) && programs.finish(found.program) ? found.program : general;
+  };
+
+  return { of };
+};
+
+/** @param {Program} general @param {[string, number][]} choices @returns {[string, string]} */
+const texts = ({ texts: [vertex, fragment] }, choices) =>
+  [withChoices(vertex, choices), withChoices(fragment, choices)];
+
+// ── Finds out whether a step of a repeat changed any texel: playground/engine/kernels.py.
+//
+// After n steps the next comparison is about √n steps away, since its answer is waited for.
 
 /** @typedef {import("./textures.js").Result} Result */
+
+const BLOCK = 8; // texels a side that one fragment compares
+const CHANGED = [{ name: "k_changed", format: "r8" }];
+
+/** @param {WebGL2RenderingContext} gl @param {import("./textures.js").Textures} textures
+ *  @param {import("./binder.js").Binder} binder @param {() => void} fill
+ *  @param {() => import("./programs.js").Program} programOf of changed.frag */
+export const createSettling = (gl, textures, binder, fill, programOf) => {
+  /** Whether a bit of a texel differs; another framebuffer and program stay bound.
+   *  @param {Result} now @param {Result} before */
+  const differ = (now, before) => {
+    const program = programOf();
+    const size = /** @type {[number, number]} */ (now.size.map((side) => Math.ceil(side / BLOCK)));
+    const target = textures.take(size, CHANGED, () => false), found = new Uint8Array(4 * size[0] * size[1]);
+    gl.useProgram(program.program);
+    setUniform(gl, program, "k_block", BLOCK);
+    textures.drawTo(target);
+    gl.viewport(0, 0, ...size);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    for (const [name, texture] of now.textures) {
+      const earlier = /** @type {import("./textures.js").Texture} */ (before.textures.get(name));
+      binder.texture(program, "k_now", 0, texture, PLAIN);
+      binder.texture(program, "k_before", 1, earlier, PLAIN);
+      fill();
+    }
+    gl.readPixels(0, 0, ...size, gl.RGBA, gl.UNSIGNED_BYTE, found);
+    textures.give(target);
+    return found.some((value, index) => value !== 0 && index % 4 === 0);
+  };
+
+  /** What watches one repeat after so many steps: it compares, or says that it need not yet.
+   *  @param {number} done
+   *  @returns {(done: number, now: Result, before: Result) => "" | "differ" | "settled"} */
+  const watch = (done) => {
+    let next = done + 2 + Math.floor(Math.sqrt(done));
+    return (count, now, before) => {
+      if (count < next) return "";
+      next = count + 1 + Math.floor(Math.sqrt(count));
+      return differ(now, before) ? "differ" : "settled";
+    };
+  };
+
+  return { watch };
+};
+
+// ── Runs kernels
+
 /** @typedef {import("./textures.js").Texture} Texture */
 /** @typedef {import("./binder.js").Wired} Wired */
-/** @typedef {import("./programs.js").Program} Program */
 /** @typedef {ReturnType<typeof createKernels>} Kernels */
 
 /** What is yielded after each piece of work: whose, and how much. What is sent back says whether others may
@@ -52,7 +166,7 @@ const ROWS = 64; // a band's rows are a multiple of these: no tile or quad of pi
 /** @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures
  *  @param {import("./programs.js").Programs} programs @param {import("./binder.js").Binder} binder
  *  @param {import("./schema.js").Shared} shared
- *  @param {number} [often]  draws with the same choices until they are written in: chosen.js */
+ *  @param {number} [often]  draws with the same choices until they are written in: kernels.js */
 export const createKernels = (context, textures, programs, binder, shared, often) => {
   const { gl } = context, chosen = createChosen(context, programs, often);
   /** @type {Map<string, Program>} */
@@ -175,7 +289,7 @@ export const createKernels = (context, textures, programs, binder, shared, often
   };
 
   /** Begin to compile a kernel. @param {import("./kernel_texts.js").KernelText} text
-   *  @param {Map<string, import("./linear_by_hand.js").Wrap>} byHand @returns {Program} */
+   *  @param {Map<string, import("./kernel_texts.js").Wrap>} byHand @returns {Program} */
   const ask = (text, byHand) => {
     const key = [...byHand].join();
     let found = text.programs.get(key);

@@ -4,14 +4,12 @@
 // key, both ways.
 
 import { settled } from "./book_data.js";
-import { liveFigure } from "./book_figure.js";
+import { createBookRecovery, liveFigure } from "./book_figure.js";
 import { liveCompare, liveSlider, liveSteps } from "./book_series.js";
-import { createBookRecovery } from "./book_recovery.js";
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
-import { keepKeys } from "./notebook_keys.js";
-import { followTheme } from "./notebook_theme.js";
+import { followTheme, keepKeys } from "./notebook_sketch.js";
 import { unpackedJson } from "./packed.js";
 
 /** @typedef {import("./session.js").Session} Session */

@@ -5,7 +5,7 @@
 // picture; it comes also where the picture is the same, or there is none.
 
 import { make } from "./dom.js";
-import { keepKeys } from "./notebook_keys.js";
+import { keepKeys } from "./notebook_sketch.js";
 
 /** @typedef {Object<string, number>} Values */
 

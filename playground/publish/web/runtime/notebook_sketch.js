@@ -4,24 +4,171 @@
 // the kernel draws; `sides` names the traits with values by path, one for each sketch; `camera`, `time` and
 // `playing` are those of all.
 
-import { createBookRecovery } from "./book_recovery.js";
-import { makePicture, makeReset, makeRows } from "./book_figure.js";
+import { createBookRecovery, makePicture, makeReset, makeRows } from "./book_figure.js";
+import { bookWords } from "./book_words.js";
+import { look } from "./camera.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
 import { grouped, labelOf } from "./labels.js";
-import { lackOf } from "./lacks.js";
-import { keepKeys } from "./notebook_keys.js";
-import { createKernelEngine } from "./notebook_kernel.js";
-import { followTheme } from "./notebook_theme.js";
-import { notebookWords } from "./notebook_words.js";
 import { unpackedJson } from "./packed.js";
+import { lackOf } from "./recovery.js";
 import { createSession } from "./session.js";
 import { createTimeline, hasTime } from "./timeline.js";
 import { isSame } from "./values.js";
-import { fill } from "./words.js";
+import { fill, wordsOf } from "./words.js";
+
+// ── Keys that a figure takes, such as arrows on a slider, from the notebook.
+
+/** Keep keys pressed in an element from the notebook around it, but those held with Ctrl, Alt or Meta, Enter
+ *  with Shift, and Escape. @param {HTMLElement} host */
+export function keepKeys(host) {
+  host.addEventListener("keydown", (event) => {
+    const { key, ctrlKey, altKey, metaKey, shiftKey } = event;
+    if (!ctrlKey && !altKey && !metaKey && key !== "Escape" && !(shiftKey && key === "Enter"))
+      event.stopPropagation();
+  });
+}
+
+// ── A figure as light or dark as the notebook around it, whichever program shows that.
+//
+// Programs say their theme in different ways; what they have in common is that text can be read on it.
+
+const JUPYTER = "data-jp-theme-light"; // the attribute by which JupyterLab says its theme
+const MIDDLE = 128; // of 255: a text that is lighter stands on something dark
+
+/** Whether a colour, as a browser computes it, is light. @param {string} colour */
+function isLight(colour) {
+  const [red = 0, green = 0, blue = 0] = (colour.match(/[\d.]+/g) ?? []).map(Number);
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue > MIDDLE;
+}
+
+/** Follow the theme of what is around an element; returns what ends that. @param {HTMLElement} host */
+export function followTheme(host) {
+  const show = () => {
+    const { parentElement } = host;
+    if (parentElement) host.classList.toggle("dark", isLight(getComputedStyle(parentElement).color));
+  };
+  const changes = new MutationObserver(() => requestAnimationFrame(show));
+  for (const of of [document.documentElement, document.body])
+    changes.observe(of, { attributes: true, attributeFilter: ["class", "style", "theme", JUPYTER] });
+  const scheme = matchMedia("(prefers-color-scheme: dark)");
+  scheme.addEventListener("change", show);
+  show();
+  return () => {
+    changes.disconnect();
+    scheme.removeEventListener("change", show);
+  };
+}
+
+// ── What a widget of sketches says besides the words of a book's figures.
+
+/** @type {import("./words.js").Table} */
+export const NOTEBOOK_WORDS = {
+  en: {
+    allParameters: "All parameters",
+    byBrowser: "Drawn by this browser.",
+    byKernel: "Drawn by the kernel: {reason}.",
+    dragHere: "Drag to orbit; wheel after a click to zoom.",
+  },
+  fr: {
+    allParameters: "Tous les paramètres",
+    byBrowser: "Dessiné par ce navigateur.",
+    byKernel: "Dessiné par le noyau : {reason}.",
+    dragHere: "Glisser pour tourner ; molette après un clic pour zoomer.",
+  },
+};
+
+/** All words of a widget. @param {string} language */
+export const notebookWords = (language) => ({ ...bookWords(language), ...wordsOf(language, NOTEBOOK_WORDS) });
+
+// ── Players whose pictures the notebook's kernel draws, and sends as a JPEG or a PNG.
+//
+// One picture is asked for at a time, and the next is of the newest state: so a drag never queues. The answer
+// is the message with the number of the question; it comes also where the kernel could not draw.
+
+/** @typedef {import("./schema.js").Sketch} Sketch */
+/** @typedef {{drawn: string, error: string}} Answer */
+
+let questions = 0;
+const mine = Math.random().toString(36).slice(2); // several views of a widget hear each other's answers
+
+/** @param {any} model of the widget @param {Sketch[]} sketches by side */
+export function createKernelEngine(model, sketches) {
+  /** @type {Map<string, (answer: Answer, buffers: DataView[]) => void>} */
+  const waiting = new Map();
+  const hear = (/** @type {Answer} */ answer, /** @type {DataView[]} */ buffers) => {
+    const act = waiting.get(answer?.drawn);
+    waiting.delete(answer?.drawn);
+    act?.(answer, buffers);
+  };
+  model.on("msg:custom", hear);
+
+  /** @param {Object<string, any>} draw @returns {Promise<ImageBitmap>} */
+  const asked = (draw) => new Promise((resolve, reject) => {
+    const id = `${mine}-${++questions}`;
+    waiting.set(id, ({ error }, buffers) => {
+      if (error) reject(new Error(error));
+      else resolve(createImageBitmap(new Blob([/** @type {any} */ (buffers[0])])));
+    });
+    model.send({ draw: { id, ...draw } });
+  });
+
+  return {
+    canvas: document.createElement("canvas"), // no context to be lost
+    restore: async () => {},
+    /** @param {Sketch} sketch @returns {import("./figure.js").Player} */
+    open(sketch) {
+      const side = sketches.indexOf(sketch);
+      /** @type {ImageBitmap | null} */
+      let picture = null;
+      /** @type {Promise<ImageBitmap> | null} */
+      let busy = null;
+      let number = 0, closed = false;
+      /** @type {any} */
+      const player = {
+        sketch, state: {}, plan: null, texts: {},
+        load: async () => {},
+        async renderSoon() {
+          const own = ++number;
+          while (busy) await busy.catch(() => {});
+          if (own !== number || closed) return null; // a later call asks
+          const { values, camera, time, frame, moving = false } = player.state, { terrain } = sketch;
+          busy = asked({ side, values, camera, time, moving, size: frame });
+          try {
+            const found = await busy;
+            if (closed) return null;
+            picture?.close();
+            picture = found;
+            const eye = look(camera, terrain.extent, terrain.relief, frame);
+            player.plan = { eye, terrain, picture: null };
+            return { ran: [], milliseconds: 0 };
+          } finally {
+            busy = null;
+          }
+        },
+        drawTo(/** @type {CanvasRenderingContext2D} */ context) {
+          const { width, height } = context.canvas;
+          if (picture) context.drawImage(picture, 0, 0, width, height);
+        },
+        read: () => { throw new Error("the kernel has the texels"); },
+        close() {
+          closed = true;
+          picture?.close();
+          picture = null;
+        },
+      };
+      return player;
+    },
+    close() {
+      model.off("msg:custom", hear);
+      waiting.clear();
+    },
+  };
+}
+
+// ── The widget of a sketch, or of two
 
 /** @typedef {import("./session.js").Session} Session */
-/** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./notebook_live.js").Model} Model */
 /** @typedef {Object<string, string>} Words */
 

@@ -1,6 +1,27 @@
 // numbers.js -- a parameter's numbers: range, steps, places after the point, unit, as the window has them.
 
-import { WIDGETS, isLog } from "./widgets.js";
+import table from "../../../shader/widgets.json" with { type: "json" };
+
+// ── The table of widgets, which Python reads as well: see playground/shader/widgets.py.
+
+/** A row: what is true of every parameter with one widget; see `Kind` in playground/shader/widgets.py.
+ *  @typedef {object} Kind
+ *  @property {string} types                GLSL types that it may be given to, apart by blanks
+ *  @property {string} control              what edits it: a row of KINDS in controls.js, or numbers
+ *  @property {"range" | "range or nothing" | "ranges" | "raw or nothing" | "choices" | "sampling"} [takes]
+ *  @property {"log"} [scale]               of the way over its range; linear without
+ *  @property {[number, number]} [range]    of each number, where the brackets give none
+ *  @property {[number, number][]} [spans]  of each part: what sliders go over, where no range is enforced
+ *  @property {[number, number][]} [limits] of each part: what a value may be, where no range is enforced
+ *  @property {string[]} [parts]            what a vector's components are called; x, y, z, w without
+ *  @property {string} [unit] */
+
+export const WIDGETS = /** @type {Object<string, Kind>} */ (/** @type {unknown} */ (table));
+
+/** @param {string} widget @returns {boolean} whether equal ways over its range are equal ratios */
+export const isLog = (widget) => WIDGETS[widget].scale === "log";
+
+// ── A parameter's numbers
 
 /** @typedef {import("./schema.js").Shown} Shown */
 /** @typedef {Pick<Shown, "type" | "widget" | "unit" | "parts" | "ranges" | "step">} Ranged */
@@ -160,3 +181,164 @@ export function dragSpeed(one, largest) {
   const speed = one.step || Math.max(Math.abs(largest), 0.1) * 0.01;
   return isWhole(one.type) ? Math.max(speed, 0.2) : speed;
 }
+
+// ── Colours between linear light and what is shown, as shader/colours.py has them.
+
+/** sRGB to linear light, one component (IEC 61966-2-1).
+ *  @param {number} shown 0 to 1 */
+export const toLinear = (shown) => (shown <= 0.04045 ? shown / 12.92 : ((shown + 0.055) / 1.055) ** 2.4);
+
+/** Linear light to sRGB, one component.
+ *  @param {number} light 0 to 1 */
+export const toShown = (light) => (light <= 0.0031308 ? light * 12.92 : 1.055 * light ** (1 / 2.4) - 0.055);
+
+/** Write a colour of three or four numbers as "#rrggbb" or "#rrggbbaa"; `raw`: it is as it is shown already.
+ *  @param {number[]} colour @param {boolean} [raw] */
+export function toHex(colour, raw) {
+  const bytes = colour.map((part, at) => {
+    const held = clamp(part);
+    return roundEven(255 * (raw || at > 2 ? held : toShown(held)));
+  });
+  return `#${bytes.map((byte) => byte.toString(16).padStart(2, "0")).join("")}`;
+}
+
+/** Read "#rgb", "#rrggbb" or "#rrggbbaa" as linear numbers, or raw ones; null where it is none.
+ *  @param {string} text @param {boolean} [raw] @returns {number[] | null} */
+export function fromHex(text, raw) {
+  let digits = /^#([0-9a-f]{3}|[0-9a-f]{6}|[0-9a-f]{8})$/i.exec(text.trim())?.[1];
+  if (!digits) return null;
+  if (digits.length === 3) digits = digits.replace(/./g, "$&$&");
+  const parts = digits.match(/../g) ?? [];
+  return parts.map((byte, at) => {
+    const shown = parseInt(byte, 16) / 255;
+    return raw || at > 2 ? shown : toLinear(shown);
+  });
+}
+
+// ── Values as text, and back: as --set takes them, as a link holds them, as TOML has them.
+
+/** @typedef {import("./schema.js").Value} Value */
+
+const MAX_METRES = 1e9; // [m] of the terrain
+
+/** Six digits where they say the same, else all there are.
+ *  @param {number} number */
+export function digits(number) {
+  const short = general(number, 6);
+  return +short === number && Math.abs(number) < 1e6 ? short : String(number);
+}
+
+/** A value as the command line takes it, exactly.
+ *  @param {Shown} one @param {Value} value @returns {string} */
+export function write(one, value) {
+  if (one.widget === "menu" && typeof value === "number") return one.choices[value] ?? String(value);
+  if (!Array.isArray(value)) return typeof value === "number" ? digits(value) : String(value);
+  if (one.widget === "colour") {
+    const text = toHex(value, one.raw),
+      there = fromHex(text, one.raw) ?? [];
+    if (value.every((part, at) => Math.abs(part - (there[at] ?? 1)) <= 1e-7)) return text;
+  }
+  return value.map(digits).join(",");
+}
+
+/** Read a text as a value of a parameter; undefined where it is none, or lies outside its range.
+ *  @param {Shown} one @param {string} text @returns {Value | undefined} */
+export function read(one, text) {
+  text = text.trim();
+  if (one.widget === "file" || one.type === "sampler2D") return undefined;
+  if (one.widget === "menu") {
+    const at = one.choices.indexOf(text);
+    if (at >= 0) return at;
+    return /^\d{1,4}$/.test(text) && +text < one.choices.length ? +text : undefined;
+  }
+  if (one.type === "bool") {
+    const word = text.toLowerCase();
+    return (
+      ["true", "on", "yes", "1"].includes(word) ||
+      (["false", "off", "no", "0"].includes(word) ? false : undefined)
+    );
+  }
+  const count = lengthOf(one.type);
+  if (one.widget === "colour" && text.startsWith("#")) {
+    const colour = fromHex(text, one.raw);
+    return colour ? [...colour, 1].slice(0, count) : undefined;
+  }
+  const parts = text.split(",").map((part) => (part.trim() ? Number(part) : NaN));
+  const value = count === 1 ? parts[0] : parts;
+  return parts.length === count && fits(one, value) ? value : undefined;
+}
+
+/** What a number of a parameter may be; of the terrain more than its slider has.
+ *  @param {Shown} one @param {number} part @returns {[number, number]} */
+function limitsOf(one, part) {
+  const { limits } = WIDGETS[one.widget];
+  if (limits) return limits[part];
+  if (one.path === "relief") return [0, MAX_METRES];
+  if (one.path === "extent") return [Number.MIN_VALUE, MAX_METRES];
+  const [low, high] = rangeOf(one, part) ?? [-Infinity, Infinity];
+  const slack = 1e-6 * Math.max(Math.abs(low), Math.abs(high));
+  if (!isWhole(one.type)) return low === -Infinity ? [low, high] : [low - slack, high + slack];
+  const whole = one.type.startsWith("u") ? [0, 2 ** 32 - 1] : [-(2 ** 31), 2 ** 31 - 1];
+  return [Math.max(low, whole[0]), Math.min(high, whole[1])];
+}
+
+/** Whether a value is one that a parameter takes, in its range.
+ *  @param {Shown} one @param {unknown} value @returns {value is Value} */
+export function fits(one, value) {
+  if (one.type === "bool") return typeof value === "boolean";
+  if (one.widget === "file" || one.type === "sampler2D") return typeof value === "string";
+  if (one.widget === "menu") return Number.isInteger(value) && one.choices[Number(value)] !== undefined;
+  const count = lengthOf(one.type), numbers = count === 1 ? [value] : Array.isArray(value) ? value : [];
+  return numbers.length === count && numbers.every((number, part) => {
+    if (typeof number !== "number" || !Number.isFinite(number)) return false;
+    const [low, high] = limitsOf(one, part);
+    return number >= low && number <= high && (!isWhole(one.type) || Number.isInteger(number));
+  });
+}
+
+/** A value as TOML has it.
+ *  @param {Shown} one @param {Value} value @returns {string} */
+export function toml(one, value) {
+  const text = write(one, value);
+  if (one.type === "bool") return text;
+  if (one.widget === "menu" || text.startsWith("#") || typeof value === "string") return quoted(text);
+  if (one.widget === "direction" && Array.isArray(value)) {
+    return `{ azimuth = ${point(value[0])}, elevation = ${point(value[1])} }`;
+  }
+  const number = isWhole(one.type) ? String : point;
+  return Array.isArray(value) ? `[${value.map(number).join(", ")}]` : number(Number(value));
+}
+
+/** @param {number} number @returns {string} with a point, so that TOML reads it as a fraction */
+const point = (number) => {
+  const text = digits(number);
+  return /[.e]/.test(text) ? text : `${text}.0`;
+};
+
+/** A basic string of TOML.
+ *  @param {string} text */
+export const quoted = (text) => JSON.stringify(text).replace(/\x7f/g, "\\u007f");
+
+/** A word of a command that any shell takes as it is: in quotes where it holds more than plain letters.
+ *  @param {string} word */
+export const shellWord = (word) =>
+  /^[\w.,=\-+/:]+$/.test(word) ? word : `"${word.replace(/[\\"$`]/g, "\\$&")}"`;
+
+// ── The values of a window's parameters as its JSON has them, and as rows show them.
+//
+// JSON has a menu's choice by its name, and a colour as "#rrggbb" where that is exact.
+
+/** A parameter as GET parameters tells it: workbench/control/described.py.
+ *  @typedef {Omit<import("./schema.js").Shown, "locked"> & {locked: boolean, file: any}} Told */
+
+/** @param {Pick<Told, "widget" | "choices" | "raw">} one @param {any} told @returns {Value} */
+export function shownValue({ widget, choices, raw }, told) {
+  if (widget === "menu") return choices.indexOf(told); // -1: the menu shows none
+  return widget === "colour" && typeof told === "string" ? fromHex(told, raw) ?? [0, 0, 0] : told;
+}
+
+/** @param {Pick<Told, "widget" | "choices">} one @param {any} value @returns {any} */
+export const toldValue = ({ widget, choices }, value) => (widget === "menu" ? choices[value] : value);
+
+/** Whether two values are the same. @param {Value} one @param {Value} other */
+export const isSame = (one, other) => JSON.stringify(one) === JSON.stringify(other);

@@ -2,14 +2,14 @@
 
 import "./with_editing.js";
 import { make } from "./dom.js";
+import { EDITOR_WORDS } from "./editor_words.js";
 import { createEngine } from "./engine.js";
-import { readPage } from "./page_file.js";
-import { repeatsOf } from "./plan.js";
+import { readPage } from "./packed.js";
 import { createCode } from "./page_code.js";
+import { PAGE_WORDS } from "./page_words.js";
+import { repeatsOf } from "./plan.js";
 import { createRecovery } from "./recovery.js";
 import { createPage } from "./sketch_page.js";
-import { EDITOR_WORDS } from "./editor_words.js";
-import { PAGE_WORDS } from "./page_words.js";
 import { wordsOf } from "./words.js";
 
 function start() {

@@ -1,9 +1,8 @@
 // page_code.js -- the code of a sketch's page: the editor, and what keeps its texts.
 
+import { finished } from "./context.js";
 import { createEditor } from "./editor.js";
-import { createGuard, keyOf } from "./last_good.js";
-import { createRecovery } from "./recovery.js";
-import { finished } from "./waiting.js";
+import { createGuard, createRecovery, keyOf } from "./recovery.js";
 
 /** @typedef {import("./engine.js").Engine} Engine */
 /** @typedef {import("./player.js").Player} Player */
@@ -22,7 +21,7 @@ const LIMIT = 10; // [s] a picture may take without a question: it is made in pi
  *  @param {Engine} engine @param {HTMLElement} host
  *  @param {{words: Object<string, string>, figure: () => CodeFigure}} options */
 export function createCode(engine, host, { words, figure }) {
-  /** @type {Map<string, import("./last_good.js").Guard>} by sketch */
+  /** @type {Map<string, import("./recovery.js").Guard>} by sketch */
   const guards = new Map();
   /** @type {Editor | null} */
   let editor = null;

@@ -1,15 +1,163 @@
 // panel.js -- what can be changed of a sketch: main parameters, passes, terrain, iterations; search, copies.
 
 import { asToml, asWords } from "./address.js";
+import { makeRow, whyLocked } from "./controls.js";
 import { button, make } from "./dom.js";
-import { iterationRows } from "./iterations.js";
 import { grouped, isLike, labelOf, mainLabels, mainRows } from "./labels.js";
-import { createRows, fold } from "./panel_rows.js";
 import { fill } from "./words.js";
 
-/** @typedef {import("./schema.js").Shown} Shown */
-/** @typedef {import("./schema.js").Choice} Choice */
+// ── Repeats that may be stopped early, a slider each; of one that may not, why.
+
 /** @typedef {import("./session.js").Session} Session */
+
+/** Make the sliders. `repeats` gives the iterations in all of each repeat, by path; none before a plan.
+ *  @param {Session} session @param {Object<string, string>} words @param {Rows} rows
+ *  @param {() => Map<string, number>} repeats */
+export function iterationRows(session, words, rows, repeats) {
+  const body = make("div", {});
+  let known = "";
+
+  const lockedOf = (/** @type {string} */ path) => session.sketch.passes[path]?.locked ?? "";
+
+  function slider(/** @type {string} */ path, /** @type {number} */ count) {
+    const label = path.split(".").map(labelOf).join(", "), own = session.sketch.steps[path];
+    const called = fill(words.iterationsOf, { name: label });
+    const range = make("input", { type: "range", min: 0, max: count, step: 1, "aria-label": called });
+    const text = make("output"), name = make("span", { className: "name", title: path }, label);
+    const row = make("div", { className: "row is-steps" }, name, range, text);
+    row.dataset.path = path;
+    const locked = lockedOf(path);
+    if (locked) range.setAttribute("aria-description", locked);
+    range.disabled = Boolean(locked);
+    row.classList.toggle("locked", range.disabled);
+    range.oninput = () => session.stop(path, +range.value === (own ?? count) ? null : +range.value);
+    row.ondblclick = () => session.stop(path, null);
+    return rows.keep(row, () => {
+      const at = Math.min(session.steps.get(path) ?? own ?? count, count);
+      range.value = String(at);
+      range.style.setProperty("--share", String(at / count));
+      text.textContent = at === count ? fill(words.allOf, { count }) : String(at);
+      range.setAttribute("aria-valuetext", text.textContent);
+      row.classList.toggle("changed", session.steps.has(path));
+    });
+  }
+
+  rows.keep(body, () => {
+    const found = [...repeats()].filter(([, count]) => count > 1), now = JSON.stringify(found);
+    if (now === known) return;
+    known = now;
+    rows.forget(body);
+    const said = new Set([""]); // why repeats are locked: once, before the first of those
+    body.replaceChildren(...found.flatMap(([path, count]) => {
+      const locked = lockedOf(path), why = said.has(locked) ? [] : [whyLocked(locked)];
+      said.add(locked);
+      return [...why, slider(path, count)];
+    }));
+  });
+  if (!session.sketch.kernels.some((kernel) => kernel.between)) return [body];
+  const box = make("input", { type: "checkbox", checked: session.interpolated });
+  box.onchange = () => { session.interpolated = box.checked; };
+  const name = make("span", { className: "name" }, words.interpolated);
+  return [body, make("label", { className: "row" }, name, box)];
+}
+
+// ── The rows of a panel: made when they are first looked at, kept as the session is.
+
+/** @typedef {import("./schema.js").Shown} Shown */
+/** @typedef {import("./schema.js").Value} Value */
+/** @typedef {ReturnType<typeof createRows>} Rows */
+
+/** Make the rows of a session. @param {Session} session @param {Object<string, string>} words */
+export function createRows(session, words) {
+  /** @type {[Element, () => void][]} what is shown, and what makes it as the session is */
+  let shown = [];
+
+  function keep(/** @type {Element} */ element, /** @type {() => void} */ show) {
+    shown.push([element, show]);
+    show();
+    return element;
+  }
+
+  /** A parameter, or what the terrain has.
+   *  @param {Shown} one @param {boolean} [said] @param {string} [title] */
+  function rowOf(one, said = false, title = "") {
+    const label = title || (one.pass ? one.label : words[one.label]);
+    const row = makeRow({ ...one, label }, label, {
+      words,
+      changed: (value) => session.set(one.path, value),
+      reset: () => session.reset(one.path),
+      press: (down) => session.press(one.path, down),
+    }, said);
+    return keep(row.element, () => row.show(session.value(one.path), session.changed(one.path)));
+  }
+
+  /** What a map is shown with. */
+  function mapRow(/** @type {Shown} */ one) {
+    const set = (/** @type {Value} */ value) => {
+      const { map } = session;
+      if (map) session.setMap({ ...map, values: { ...map.values, [one.targets[0]]: value } });
+    };
+    const row = makeRow(one, one.label, {
+      words, changed: set, reset: () => set(one.value), press: () => {},
+    });
+    return keep(row.element, () => row.show(session.map?.values[one.targets[0]] ?? one.value));
+  }
+
+  /** Rows one after another; why several of them are locked stands once, before the first of these.
+   *  @param {Shown[]} items @param {{said?: string, titles?: Map<string, string>}} [how]  `said`: what was
+   *  said of all before; `titles`: other labels, by path */
+  function rowsOf(items, { said = "", titles } = {}) {
+    const known = new Set([said]);
+    return items.flatMap((one) => {
+      const { locked } = one, title = titles?.get(one.path);
+      const several = items.some((other) => other !== one && other.locked === locked);
+      if (!locked || !(several || locked === said)) return [rowOf(one, false, title)];
+      const row = rowOf(one, true, title);
+      if (known.has(locked)) return [row];
+      known.add(locked);
+      return [whyLocked(locked), row];
+    });
+  }
+
+  /** Rows by their groups, those without one first. @param {Shown[]} items */
+  function groups(items) {
+    const sorted = grouped(items, (row) => row.group), first = sorted.get("") ?? [];
+    sorted.delete("");
+    const locked = items.length > 1 ? items[0].locked : "";
+    const said = items.every((one) => one.locked === locked) ? locked : ""; // of the whole section
+    const headed = [...sorted].flatMap(([group, inside]) => [
+      make("h3", {}, group), ...rowsOf(inside, { said }),
+    ]);
+    return [...(said ? [whyLocked(said)] : []), ...rowsOf(first, { said }), ...headed];
+  }
+
+  return {
+    keep, rowsOf, groups,
+    /** @param {() => void} fit */
+    mapRows: (fit) => [...session.sketch.map.shown.map(mapRow), button(words.fitValues, fit)],
+    refresh: () => shown.forEach(([, show]) => show()),
+    /** Forget the rows of an element, or all. @param {Element} [within] */
+    forget(within) { shown = within ? shown.filter(([element]) => !within.contains(element)) : []; },
+  };
+}
+
+/** A fold whose inside is made when it is first opened.
+ *  @param {string} title @param {boolean} open @param {() => (Node | null)[]} inside
+ *  @param {string} [name] */
+export function fold(title, open, inside, name = "section") {
+  const body = make("div", { className: "fold" });
+  const made = make("details", { className: name, open }, make("summary", {}, title), body);
+  const fillIn = () => {
+    if (made.open && !body.childNodes.length) body.append(...inside().filter((node) => node !== null));
+  };
+  made.addEventListener("toggle", fillIn);
+  fillIn();
+  return made;
+}
+
+// ── What can be changed of a sketch
+
+/** @typedef {import("./schema.js").Choice} Choice */
 
 /** @typedef {object} PanelOptions
  *  @property {Object<string, string>} words

@@ -14,7 +14,7 @@
  *  @property {[number, number]} size                    texels
  *  @property {number} repeat                            iterations to run
  *  @property {number} total                             iterations in all
- *  @property {{k_stride: number, k_form: number} | null} between   see betweenOf of lattice.js */
+ *  @property {{k_stride: number, k_form: number} | null} between   see betweenOf of formulas.js */
 
 /** A loop made concrete. bodies: of each iteration, one where all are the same; body: of the last.
  *  @typedef {{path: string, loop: true, repeat: number, total: number, countsFrames: boolean,

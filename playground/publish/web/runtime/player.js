@@ -1,28 +1,164 @@
 // player.js -- one sketch in an engine: its state, its picture, its texts.
 
 import { needed as addOn } from "./addons.js";
+import { PLAIN } from "./binder.js";
 import { failure } from "./context.js";
 import { readTexture } from "./draws.js";
 import { createExecution } from "./execution.js";
-import { createEyeHeight } from "./eye_height.js";
 import { readKernel } from "./kernel_texts.js";
 import { makePlan } from "./plan.js";
 import { isLoop, needed, stepsOf } from "./plan_nodes.js";
-import { blobAt, playingOf } from "./recordings.js";
 import { keysOf } from "./staleness.js";
-import { PLAIN } from "./binder.js";
+
+// ── Which exported frame of a film or a sound shows at a time: engine/time_sources.py.
+
+/** @typedef {import("./schema.js").DataTexture} DataTexture */
+
+// [s] A time is meant to be that of the frame that begins so little later.
+const MARGIN = 1e-6;
+
+/** Which second of the file shows, before it loops, and whether it does.
+ *  @typedef {{start: number, speed?: number, loop: boolean}} Playing */
+
+/** Return the blob that a texture of a source has at a time in seconds; of what does not play, its own.
+ *  @param {DataTexture} texture @param {Playing | null} playing @param {number} time @returns {string} */
+export function blobAt(texture, playing, time) {
+  const { length = 0, laps } = texture;
+  if (!texture.times || !texture.frames || !playing) return texture.blob;
+  let { times, frames } = texture, second = playing.start + (playing.speed ?? 1) * time + MARGIN;
+  const before = second < 0 && playing.speed === undefined; // of a sound, which begins in silence
+  if (playing.loop && length > 0 && !before) {
+    const lead = laps ? laps.lead : 0, once = laps ? lead + length : 0; // after that nothing is new
+    if (second < 0 || second >= once) second -= Math.floor((second - lead) / length) * length;
+    if (laps && second >= length) ({ times, frames } = laps);
+  }
+  let low = 0, high = times.length; // as Python's bisect_right
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (second < times[middle]) high = middle;
+    else low = middle + 1;
+  }
+  return frames[Math.max(low - 1, 0)];
+}
+
+/** Return how a source plays its file; null of one that plays none.
+ *  @param {import("./schema.js").Leaf} leaf
+ *  @param {Object<string, import("./schema.js").Value>} values of its parameters, by name
+ *  @returns {Playing | null} */
+export function playingOf({ clock, values: paths }, values) {
+  if (!clock) return null;
+  const byPath = new Map(Object.entries(paths).map(([name, path]) => [path, values[name]]));
+  const speed = clock.speed === undefined ? undefined : Number(byPath.get(clock.speed));
+  return { start: Number(byPath.get(clock.start)), speed, loop: Boolean(byPath.get(clock.loop)) };
+}
+
+// ── Keeps the eye above the terrain: engine/eye_height.py.
+//
+// The terrain is what the first draw reads as its input `height`, if that draw names `relief` and the
+// camera. Its
+// texels are read once for each place of the eye; an eye outside the terrain is left where it is.
 
 /** @typedef {import("./plan.js").Plan} Plan */
+/** @typedef {import("./schema.js").Camera} Camera */
+/** @typedef {{path: string, output: string}} Ref */
+
+const CLEARANCE = 0.002; // above the ground, as a share of the eye's distance from its target
+const MAX_ELEVATION = 89; // degrees of elevation, at most
+
+/** @param {(kernel: import("./schema.js").Kernel) => Set<string>} namesOf the names in a kernel's text */
+export const createEyeHeight = (namesOf) => {
+  let raisedBy = 0, terrainKey = "", read = "", height = 0;
+
+  /** @param {Plan} plan @returns {Ref | null} */
+  const terrainOf = (plan) => {
+    for (const { kernel, inputs } of stepsOf(plan.nodes)) {
+      const source = kernel.kind === "draw" && inputs.find(([name]) => name === "height")?.[1];
+      if (!source || !("path" in source)) continue;
+      const names = namesOf(kernel);
+      if (names.has("relief") && names.has("clip_from_world")) return source;
+    }
+    return null;
+  };
+
+  /** Return where the eye is above the terrain, in shares of its sides; null outside it.
+   *  @param {Plan} plan */
+  const placeOf = ({ eye, terrain }) => {
+    const [x, y] = [0, 1].map((axis) => eye.eye[axis] / terrain.extent[axis]);
+    return x >= 0 && x <= 1 && y >= 0 && y <= 1 ? [x, y] : null;
+  };
+
+  /** Return a camera over the height that was read; null where the plan's own eye may stay.
+   *  @param {Plan} plan @returns {Camera | null} */
+  const over = (plan) => {
+    const [x, y, z] = plan.eye.eye, lowest = height * plan.terrain.relief + CLEARANCE * plan.eye.distance;
+    raisedBy = 0;
+    if (!(z < lowest)) return null;
+    raisedBy = lowest - z;
+    const { target } = plan.eye, [east, north, up] = [x, y, lowest].map((side, axis) => side - target[axis]);
+    const level = Math.hypot(east, north), degrees = 180 / Math.PI;
+    return {
+      ...plan.camera,
+      azimuth: level > 0 ? Math.atan2(east, north) * degrees : plan.camera.azimuth,
+      elevation: Math.min(Math.atan2(up, level) * degrees, MAX_ELEVATION),
+      distance: Math.hypot(level, up),
+      target: /** @type {[number, number, number]} */ ([...target]),
+    };
+  };
+
+  return {
+    /** By how many metres the last picture's eye was raised; 0: it was above the terrain. */
+    get raisedBy() { return raisedBy; },
+
+    /** Return a camera over the terrain where the last eye was raised over the same terrain, at the same
+     *  place;
+     *  null: the terrain must be drawn and read first.
+     *  @param {Plan} plan @param {import("./staleness.js").Keys} keys */
+    raisedAsBefore: (plan, keys) => {
+      const source = raisedBy ? terrainOf(plan) : null, place = placeOf(plan);
+      const isRead = !!source && keys.steps.get(source.path) === terrainKey && read.endsWith(` ${place}`);
+      return isRead && place ? over(plan) : null;
+    },
+
+    /** Return a camera whose eye is over the terrain, or null where the plan's own is.
+     *  @param {Plan} plan @param {import("./staleness.js").Keys} keys
+     *  @param {(ref: Ref) => import("./binder.js").Wired | null} wired
+     *  @param {(texture: import("./textures.js").Texture, corner: number[], size: number[]) => number[]}
+     *  texels
+     *  the first channel of a block of texels */
+    raised: (plan, keys, wired, texels) => {
+      const source = terrainOf(plan), place = placeOf(plan), found = source && wired(source);
+      raisedBy = 0;
+      if (!source || !place || !found) return null;
+      const key = `${found.result.number} ${place}`;
+      if (read !== key) {
+        const { size } = found.texture, at = place.map((share, axis) => share * (size[axis] - 1));
+        const low = at.map((all, axis) => Math.min(Math.trunc(all), Math.max(size[axis] - 2, 0)));
+        const [wide, tall] = size.map((side) => Math.min(2, side));
+        const block = texels(found.texture, low, [wide, tall]);
+        const [p, q] = at.map((all, axis) => all - low[axis]);
+        /** @param {number} i @param {number} j */
+        const corner = (i, j) => block[Math.min(j, tall - 1) * wide + Math.min(i, wide - 1)];
+        const [west, east] = [0, 1].map((i) => (1 - q) * corner(i, 0) + q * corner(i, 1));
+        height = west * (1 - p) + east * p;
+        read = key;
+      }
+      terrainKey = keys.steps.get(source.path) || "";
+      return over(plan);
+    },
+  };
+};
+
+// ── One sketch in an engine
+
 /** @typedef {import("./plan_nodes.js").Step} Step */
 /** @typedef {import("./schema.js").Kernel} Kernel */
 /** @typedef {import("./kernel_texts.js").KernelText} KernelText */
-/** @typedef {{path: string, output: string}} Ref */
 /** @typedef {ReturnType<typeof createExecution>} Execution */
 
 /** @typedef {object} Player
  *  @property {import("./schema.js").Sketch} sketch
  *  @property {import("./schema.js").Shared} shared
- *  @property {import("./requests.js").State} state   may be changed at any time
+ *  @property {import("./plan.js").State} state   may be changed at any time
  *  @property {Plan | null} plan                     of the last picture
  *  @property {boolean} looks                        whether that picture depends on the camera
  *  @property {number} raisedBy                      [m] by which its eye was raised out of the terrain
@@ -35,7 +171,7 @@ import { PLAIN } from "./binder.js";
  *  @property {(context2d: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D) => void} drawTo
  *  @property {() => Uint8Array} picture             RGBA, row 0 south
  *  @property {(ref: Ref) => {size: [number, number], channels: number, data: Float32Array}} read
- *  @property {(file: string, text: string) => Promise<import("./edits.js").Edit>} edit
+ *  @property {(file: string, text: string) => Promise<import("./with_editing.js").Edit>} edit
  *  @property {() => import("./programs.js").Program[]} programs   that it may need again
  *  @property {() => void} forget                    what lived in a context that was lost
  *  @property {() => void} close */

@@ -3,10 +3,10 @@
 import { makeRow } from "./controls.js";
 import { make } from "./dom.js";
 import { isLike, labelOf } from "./labels.js";
+import { isSame, shownValue, toldValue } from "./numbers.js";
 import { PAGE_WORDS } from "./page_words.js";
-import { isSame, shownValue, toldValue } from "./remote_values.js";
 
-/** @typedef {import("./remote_values.js").Told} Told */
+/** @typedef {import("./numbers.js").Told} Told */
 /** @typedef {{one: Told, label: string, element: HTMLElement, told: (value: any) => void}} Row */
 
 const ECHO = 300; // [ms] after a change of its own that a row takes none from the window: they are older

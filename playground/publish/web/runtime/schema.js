@@ -1,7 +1,7 @@
 // schema.js -- what Python writes and the runtime reads: types only, nothing runs here.
 //
-// Written by playground/publish/web/*.py. Paths are those of the flat sketch ("height.sum"); texels have row 0
-// south; angles are degrees, lengths metres, times seconds.
+// Written by the modules of playground/publish/web. Paths are those of the flat sketch ("height.sum"); texels
+// have row 0 south; angles are degrees, lengths metres, times seconds.
 
 /** A number, a name, or an operation on others: see formulas.js.
  *  Names: "time", "frames"; in a kernel's header "size.x", "iteration", a parameter's own name.
@@ -205,7 +205,7 @@
  *                                                  (file) the file itself, to be decoded by the browser
  *  @property {Object<string, string>} blobs        by key, see packed.js */
 
-/** A page: what one HTML file holds (see page_file.js), or what a book's scripts put together.
+/** A page: what one HTML file holds (see packed.js), or what a book's scripts put together.
  *  @typedef {{format: 1, sketches: Sketch[], shared: Shared}} Page */
 
 export {};

@@ -1,6 +1,6 @@
 // session.js -- what a user has made of a sketch: values, terrain, time, camera, steps to undo; no page.
 
-import { fits } from "./value_text.js";
+import { fits } from "./numbers.js";
 
 /** @typedef {import("./schema.js").Shown} Shown */
 /** @typedef {import("./schema.js").Sketch} Sketch */

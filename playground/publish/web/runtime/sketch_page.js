@@ -1,17 +1,217 @@
 // sketch_page.js -- a page about one sketch: the picture, its tools and time, the panel, the code.
 
-import { asToml } from "./address.js";
-import { copy, make, save as saveFile } from "./dom.js";
+import { asToml, followAddress } from "./address.js";
+import { button, copy, isTyping, make, save as saveFile, svg } from "./dom.js";
 import { createFigure } from "./figure.js";
-import { iconButton } from "./icons.js";
-import { followKeys, keysDialog } from "./keys.js";
-import { followAddress } from "./page_address.js";
-import { createFullScreen, recallTheme, switchTheme } from "./page_room.js";
 import { createPanel } from "./panel.js";
 import { createSession } from "./session.js";
-import { createTabs } from "./tabs.js";
 import { createTimeline, hasTime, stepped } from "./timeline.js";
 import { fill } from "./words.js";
+
+// ── The pictures on buttons, drawn as lines.
+
+/** Lines in a square of 16 by 16. */
+const LINES = {
+  full: "M2 6V2h4M10 2h4v4M14 10v4h-4M6 14H2v-4",
+  save: "M8 2v8M4.5 7 8 10.500 11.500 7M2.500 13.500h11",
+  view: "M3 7.500 8 3l5 4.500M4.500 7v6h7V7",
+  keys: "M5.500 6a2.500 2.500 0 1 1 3.700 2.200C8.300 8.700 8 9.200 8 10M8 12.800v.4",
+  theme: "M8 2a6 6 0 1 0 0 12V2ZM8 2a6 6 0 0 1 0 12",
+  panel: "M2 3h12v10H2ZM10 3v10",
+};
+
+/** A button with a picture; its label is for those who do not see it, and a tooltip.
+ *  @param {keyof typeof LINES} name @param {string} label @param {() => void} act */
+export function iconButton(name, label, act) {
+  const drawn = svg(
+    "svg",
+    { viewBox: "0 0 16 16", class: "icon", "aria-hidden": "true" },
+    svg("path", { d: LINES[name] }),
+  );
+  return make(
+    "button",
+    { type: "button", className: `tool tool-${name}`, title: label, "aria-label": label, onclick: act },
+    drawn,
+  );
+}
+
+// ── Tabs over elements of which one is shown.
+
+/** Make the tabs; each element has an id. @param {[string, HTMLElement][]} pages
+ *  @param {(chosen: number) => void} changed */
+export function createTabs(pages, changed) {
+  const tabs = pages.map(([label, page], at) => {
+    const tab = make("button", { type: "button", role: "tab", "aria-controls": page.id }, label);
+    page.setAttribute("role", "tabpanel");
+    page.setAttribute("aria-label", label);
+    tab.onclick = () => select(at);
+    tab.onkeydown = (event) => {
+      const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+      if (by) select((at + by + pages.length) % pages.length).focus();
+    };
+    return tab;
+  });
+
+  function select(/** @type {number} */ chosen) {
+    pages.forEach(([, page], at) => {
+      page.hidden = at !== chosen;
+      tabs[at].setAttribute("aria-selected", String(at === chosen));
+      tabs[at].tabIndex = at === chosen ? 0 : -1;
+    });
+    changed(chosen);
+    return tabs[chosen];
+  }
+  select(0);
+  return { element: make("div", { role: "tablist", className: "tabs" }, ...tabs), select };
+}
+
+// ── What each key does in a page: one table, which the list of keys shows as well.
+
+/** @typedef {Object<string, string>} Words */
+/** What the keys do.
+ *  @typedef {object} Acts
+ *  @property {(across: number, down: number) => void} turn  shares of the picture's height
+ *  @property {(across: number, down: number) => void} move
+ *  @property {(notches: number) => void} zoom
+ *  @property {Object<string, () => void>} by                by the names of the table */
+
+const STEP = 1 / 36; // of the picture's height an arrow turns: 5 degrees
+/** @type {Object<string, [number, number]>} */
+const ARROWS = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, -STEP], ArrowDown: [0, STEP] };
+
+/** Key → what it does, and the name of its meaning in the words. @type {[string, string, string][]} */
+const KEYS = [
+  ["r", "resetView", "keyResetView"],
+  [" ", "play", "keyPlay"],
+  [",", "back", "keyFrame"],
+  [".", "on", "keyFrame"],
+  ["0", "start", "keyStart"],
+  ["m", "map", "keyMap"],
+  ["s", "save", "keySave"],
+  ["p", "panel", "keyPanel"],
+  ["/", "search", "keySearch"],
+  ["f", "full", "keyFull"],
+  ["?", "help", "keyHelp"],
+];
+
+/** Act on keys, unless they are typed into a field. @param {Document} document @param {Acts} acts
+ *  @param {HTMLElement} canvas */
+export function followKeys(document, acts, canvas) {
+  document.addEventListener("keydown", (event) => {
+    const { target, key } = event,
+      ctrl = event.ctrlKey || event.metaKey;
+    if (event.defaultPrevented || event.altKey || document.querySelector("dialog[open]")) return;
+    if (isTyping(target)) {
+      if (key === "Escape" && target instanceof HTMLElement) target.blur();
+      return;
+    }
+    const act = () => {
+      if (ctrl)
+        return { z: event.shiftKey ? acts.by.redo : acts.by.undo, y: acts.by.redo }[key.toLowerCase()];
+      const free = target === canvas || target === document.body,
+        arrow = ARROWS[key];
+      if (arrow)
+        return free
+          ? () => (event.shiftKey ? acts.move(-arrow[0], -arrow[1]) : acts.turn(...arrow))
+          : undefined;
+      if (key === "+" || key === "=") return () => acts.zoom(1);
+      if (key === "-") return () => acts.zoom(-1);
+      if (key === " " && !free) return undefined;
+      const found = KEYS.find(([name]) => name === key.toLowerCase());
+      return found && acts.by[found[1]];
+    };
+    const done = act();
+    if (!done) return;
+    event.preventDefault();
+    done();
+  });
+}
+
+/** Make the list of keys, a dialog. @param {Words} words */
+export function keysDialog(words) {
+  const line = (/** @type {string} */ keys, /** @type {string} */ meaning) => [
+    make("dt", {}, ...keys.split(" | ").map((key) => make("kbd", {}, key))),
+    make("dd", {}, meaning),
+  ];
+  const named = new Map(
+    KEYS.map(([, , meaning]) => [
+      meaning,
+      KEYS.filter((key) => key[2] === meaning)
+        .map(([key]) => (key === " " ? words.space : key.toUpperCase()))
+        .join(" | "),
+    ]),
+  );
+  const dialog = make("dialog", { className: "keys", "aria-label": words.keys });
+  dialog.append(
+    make("h2", {}, words.keys),
+    make(
+      "dl",
+      {},
+      ...line(words.arrows, words.keyOrbit),
+      ...line(words.shiftArrows, words.keyPan),
+      ...line("+ | −", words.keyZoom),
+      ...[...named].flatMap(([meaning, keys]) => line(keys, words[meaning])),
+      ...line("Ctrl+Z | Ctrl+Shift+Z", words.keyUndo),
+      ...line("Esc", words.keyClose),
+    ),
+    make("p", {}, words.mouse),
+    make("p", {}, words.touch),
+    make("p", {}, words.rows),
+    button(words.close, () => dialog.close()),
+  );
+  dialog.onclick = (event) => {
+    if (event.target === dialog) dialog.close();
+  };
+  return dialog;
+}
+
+// ── The room of a page: the whole screen or the window, with the panel or alone, light or dark.
+
+const KEY = "playground-theme";
+
+/** Fill the screen with an element, or no longer. Where a browser fills it with films only, as on some
+ *  phones, the element fills the window.
+ *  @param {HTMLElement} main @param {(full: boolean) => void} changed */
+export function createFullScreen(main, changed) {
+  const isFull = () => document.fullscreenElement === main || main.classList.contains("filled");
+  const show = () => {
+    main.classList.toggle("alone", isFull());
+    changed(isFull());
+  };
+  document.addEventListener("fullscreenchange", show);
+  return async () => {
+    if (document.fullscreenElement) return document.exitFullscreen();
+    if (main.classList.contains("filled")) main.classList.remove("filled");
+    else {
+      try {
+        return await main.requestFullscreen();
+      } catch {
+        main.classList.add("filled");
+      }
+    }
+    return show();
+  };
+}
+
+/** Light if it is dark, and the other way round; the browser remembers it, where it may. */
+export function switchTheme() {
+  const { dataset } = document.documentElement;
+  const usual = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+  dataset.theme = (dataset.theme || usual) === "dark" ? "light" : "dark";
+  try {
+    localStorage.setItem(KEY, dataset.theme);
+  } catch { /* it is not remembered */ }
+}
+
+/** As it was switched before. */
+export function recallTheme() {
+  try {
+    const known = localStorage.getItem(KEY);
+    if (known === "light" || known === "dark") document.documentElement.dataset.theme = known;
+  } catch { /* none is remembered */ }
+}
+
+// ── A page about one sketch
 
 /** @typedef {import("./schema.js").Page} Page */
 /** @typedef {import("./figure.js").Engine} Engine */

@@ -1,7 +1,61 @@
 // textures.js -- textures and what draws to them; spare ones are used again, under a budget.
 
 import { failure } from "./context.js";
-import { formatsOf } from "./formats.js";
+import { unpacked } from "./packed.js";
+
+// ── The formats of textures: what WebGL calls them, and what one without 16-bit channels takes
+// instead.
+
+/** @typedef {object} Format
+ *  @property {number} internal
+ *  @property {number} external
+ *  @property {number} type
+ *  @property {number} channels
+ *  @property {number} bytes         of a texel
+ *  @property {boolean} float32
+ *  @property {number} steps         a normalised format kept in floats: its steps from 0 to 1; else 0 */
+
+/** @param {import("./context.js").Context} context @returns {(name: string) => Format} */
+export const formatsOf = ({ gl, norm16 }) => {
+  const any = /** @type {any} */ (gl);
+  /** @type {Map<string, Format>} */
+  const known = new Map();
+  /** @param {string} name @returns {Format} */
+  const made = (name) => {
+    if (name === "srgb8") return { ...made("rgba8"), internal: gl.SRGB8_ALPHA8 };
+    const [, letters, kind] = /** @type {RegExpExecArray} */ (/^([rgba]+)(\w+)$/.exec(name));
+    const channels = letters.length, external = [gl.RED, gl.RG, gl.RGB, gl.RGBA][channels - 1];
+    if (kind === "16" && !norm16) return { ...made(`${letters}32f`), steps: 65535 };
+    const internal = kind === "16" ? /** @type {any} */ (norm16)[`${letters.toUpperCase()}16_EXT`]
+      : any[letters.toUpperCase() + kind.toUpperCase()];
+    const type = { 8: gl.UNSIGNED_BYTE, 16: gl.UNSIGNED_SHORT, "16f": gl.HALF_FLOAT, "32f": gl.FLOAT }[kind];
+    if (!internal || !type) throw new Error(`format ${name}`);
+    const bytes = (channels * parseInt(kind)) / 8;
+    return { internal, external, type, channels, bytes, float32: kind === "32f", steps: 0 };
+  };
+  return (name) => {
+    let found = known.get(name);
+    if (!found) known.set(name, (found = made(name)));
+    return found;
+  };
+};
+
+/** Return what a kernel's fragment shader writes last where normalised formats are kept in floats.
+ *  @param {{name: string, format: string}[]} outputs @param {(name: string) => Format} formats */
+export const roundedOutputs = (outputs, formats) =>
+  outputs.filter((output) => formats(output.format).steps).map(({ name, format }) => {
+    const steps = formats(format).steps.toFixed(1);
+    return ` k_out_${name} = floor(clamp(k_out_${name}, 0.0, 1.0) * ${steps} + 0.5) / ${steps};`;
+  }).join("");
+
+/** Return a format's texels as what is uploaded. @param {WebGL2RenderingContext} gl @param {Format} format
+ *  @param {ArrayBuffer} bytes as Python writes them */
+export const texelsOf = (gl, { type, steps }, bytes) => {
+  if (steps) return Float32Array.from(new Uint16Array(bytes), (value) => value / steps);
+  return new (type === gl.UNSIGNED_BYTE ? Uint8Array : type === gl.FLOAT ? Float32Array : Uint16Array)(bytes);
+};
+
+// ── Textures and what draws to them
 
 /** @typedef {{texture: WebGLTexture, size: [number, number], format: string, levels: number, bytes: number,
  *             target: WebGLFramebuffer | null}} Texture */
@@ -260,4 +314,82 @@ export const createTextures = (context, limit) => {
     formats, texture, write, buildLevels, release, targetOf, drawTo, bytesOf, result, take, give, surface,
     resolve, giveSurface, clear, get bytes() { return bytes; },
   };
+};
+
+// ── What a page carries as bytes: blobs, and image files as textures.
+
+/** @typedef {ReturnType<typeof createImages>} Images */
+
+/** @param {Textures} textures @param {import("./schema.js").Shared} shared */
+export const createImages = (textures, shared) => {
+  /** @type {Map<string, Promise<ArrayBuffer>>} */
+  const asked = new Map();
+  /** @type {Map<string, ArrayBuffer>} */
+  const blobs = new Map();
+  /** @type {Map<string, Texture>} */
+  const made = new Map();
+
+  /** @param {string} key */
+  const loadBlob = async (key) => {
+    if (blobs.has(key)) return;
+    if (!asked.has(key)) asked.set(key, unpacked(shared.blobs[key]));
+    blobs.set(key, await /** @type {Promise<ArrayBuffer>} */ (asked.get(key)));
+    asked.delete(key);
+  };
+
+  /** Make the texture of an image file, if it is not made.
+   *  @param {string} key @param {import("./schema.js").Sampling} sampling */
+  const load = async (key, { mipmap, flip = false }) => {
+    const image = shared.images[key], name = `${key} ${flip}`, known = made.get(name);
+    if (!image) throw failure("no-image", `The page carries no image '${key}'.`);
+    if (known && (known.levels > 1 || !mipmap)) return;
+    const bytes = await unpacked(shared.blobs[image.blob]);
+    const texels = image.file ? await decoded(bytes, image.file, flip) : inRows(bytes, image, flip);
+    const texture = textures.texture(image.size, image.kind, mipmap);
+    textures.write(texture, texels);
+    if (mipmap) textures.buildLevels(texture);
+    const before = made.get(name); // loaded meanwhile
+    if (before) textures.release(before);
+    made.set(name, texture);
+  };
+
+  return {
+    load, loadBlob,
+
+    /** Return the texture of an image that was loaded.
+     *  @param {string} key @param {import("./schema.js").Sampling} sampling @returns {Texture} */
+    get: (key, { flip = false }) => {
+      const found = made.get(`${key} ${flip}`);
+      if (!found) throw failure("no-image", `The image '${key}' is not loaded.`);
+      return found;
+    },
+
+    /** Return the bytes of a blob that was loaded. @param {string} key @returns {ArrayBuffer} */
+    blob: (key) => {
+      const found = blobs.get(key);
+      if (!found) throw failure("no-image", `The data '${key}' are not loaded.`);
+      return found;
+    },
+
+    clear: () => {
+      made.forEach(textures.release);
+      made.clear();
+      blobs.clear();
+    },
+  };
+};
+
+/** Return an image file's pixels as they are encoded, row 0 south unless `flip`.
+ *  @param {ArrayBuffer} bytes @param {string} type @param {boolean} flip */
+const decoded = (bytes, type, flip) => createImageBitmap(new Blob([bytes], { type }),
+  { premultiplyAlpha: "none", colorSpaceConversion: "none", imageOrientation: flip ? "none" : "flipY" });
+
+/** Return texels, their rows the other way round where `flip`.
+ *  @param {ArrayBuffer} bytes @param {{size: [number, number], kind: string}} image @param {boolean} flip */
+const inRows = (bytes, { size: [, height], kind }, flip) => {
+  const all = kind === "rgba16f" ? new Uint16Array(bytes) : new Uint8Array(bytes), row = all.length / height;
+  if (!flip) return all;
+  const found = all.slice();
+  for (let y = 0; y < height; y++) found.set(all.subarray(y * row, (y + 1) * row), (height - 1 - y) * row);
+  return found;
 };

@@ -3,3 +3,5 @@
 import "./with_editing.js";
 import "./with_keyframes.js";
 import "./with_plain.js";
+
+

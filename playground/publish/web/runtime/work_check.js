@@ -1,10 +1,131 @@
 // work_check.js -- judges a reader's work as tasks/judge.py does, and says how near a picture is as score.py.
 
-import { LEVELS, SHARE, difference, sizeToCompare } from "./picture_check.js";
+import { general } from "./numbers.js";
 import { createSession } from "./session.js";
 import { leavesOf } from "./values.js";
+import { fill } from "./words.js";
+
+// ── What is said of a work that was checked, as playground/course/tasks/sentences.py does.
+//
+// The words are those of [tasks] in course/labels, which a book's scripts hold.
+
+const NARROW = "\u202f"; // the space before a sign of percent
+
+/** A number in a language. @param {string} text @param {boolean} comma */
+const local = (text, comma) => (comma ? text.replace(".", ",") : text);
+
+/** A share in percent, to two digits, never as a power of ten. @param {number} share */
+function percent(share) {
+  const value = 100 * share, rounded = Number(value.toExponential(1));
+  const power = rounded ? Math.floor(Math.log10(Math.abs(rounded))) : 0;
+  return `${rounded.toFixed(Number.isInteger(value) ? 0 : Math.max(1 - power, 0))}${NARROW}%`;
+}
+
+/** @param {number[]} size  width, height, channels of a texture @param {Object<string, string>} say */
+function sized([width, height, channels], say) {
+  return fill(say.channels, { width, height, channels });
+}
+
+/** What comes of one check, as a sentence. @param {Outcome} found @param {PageCheck} check
+ *  @param {Object<string, string>} say  of [tasks] in course/labels @param {boolean} comma */
+export function sentence(found, check, say, comma) {
+  const at = check.said.map(([path, value]) => `${path} = ${local(value, comma)}`).join(", ");
+  const where = check.hidden ? say.hidden : at ? fill(say.at, { at }) : "";
+  const what = whatOf(found, check, say, comma);
+  const isName = check.of && what.startsWith(check.of.name);
+  return where || isName ? where + what : what[0].toUpperCase() + what.slice(1);
+}
+
+/** @param {Outcome} found @param {PageCheck} check @param {Object<string, string>} say
+ *  @param {boolean} comma */
+function whatOf(found, check, say, comma) {
+  const kind = check.of ? "texture" : "picture", of = check.of?.name ?? "";
+  if (found.mistake) return fill(say.mistake, { mistake: found.mistake.replace(/\.+$/, "") });
+  if (found.passed) return fill(say[`right_${kind}`], { of });
+  if (found.sizes) {
+    const [mine, wanted] = found.sizes.map((size) => sized(size, say));
+    return fill(say.size, { of, mine, wanted });
+  }
+  if (found.notFinite) {
+    const key = found.notFinite > 1 ? "not_finite" : "not_finite_one";
+    return fill(say[key], { of, count: found.notFinite });
+  }
+  const place = found.place ? say[`${check.of ? "map" : "place"}_${found.place}`] : "";
+  const bias = found.bias ? say[`bias_${kind}_${found.bias > 0 ? "more" : "less"}`] : "";
+  const [by, tolerance] = [found.difference, check.tolerance].map((value) => local(general(value, 3), comma));
+  const share = local(percent(found.difference), comma);
+  return fill(say[`wrong_${kind}`], { of, share, by, tolerance, place, bias });
+}
+
+// ── Whether a picture is the one that was asked for.
+//
+// The same formula may be written in another order, which moves a float's last digit and so a pixel by a
+// level, or an edge by a pixel. What is asked for is a picture that nobody could tell from the right one.
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
+/** @typedef {import("./player.js").Player} Player */
+
+export const LEVELS = 3; // of 255 that no eye sees
+export const SHARE = 0.002; // of all pixels that may differ by more
+
+const PIECE = 360; // pixels that are compared, each way at most
+
+/** The share of the pixels that differ by more than `LEVELS` in a colour; 1 for another size.
+ *  @param {Uint8Array} one @param {Uint8Array} other */
+export function difference(one, other) {
+  if (one.length !== other.length) return 1;
+  let count = 0;
+  for (let at = 0; at < one.length; at += 4) {
+    for (let part = 0; part < 3; part++) {
+      if (Math.abs(one[at + part] - other[at + part]) > LEVELS) {
+        count++;
+        break;
+      }
+    }
+  }
+  return (4 * count) / one.length;
+}
+
+/** Pixels of the pictures that are compared: of the sketch's shape. @param {[number, number]} frame
+ *  @param {number} [side]  each way at most
+ *  @returns {[number, number]} */
+export function sizeToCompare([width, height], side = PIECE) {
+  const scale = Math.min(1, side / Math.max(width, height));
+  return [Math.max(Math.round(width * scale), 16), Math.max(Math.round(height * scale), 16)];
+}
+
+/** Compare pictures with that of a sketch as it is; `state` is a session's.
+ *  @param {{open: (sketch: Sketch) => any}} engine @param {Sketch} sketch
+ *  @param {Object<string, any>} state */
+export async function createCheck(engine, sketch, state) {
+  const player = engine.open(sketch), frame = sizeToCompare(sketch.frame);
+  const draw = (/** @type {Object<string, any>} */ wanted) => {
+    Object.assign(player.state, wanted, { frame, camera: null, time: sketch.time, map: null });
+    player.render();
+    return /** @type {Uint8Array} */ (player.picture());
+  };
+  Object.assign(player.state, state, { frame });
+  await player.load();
+  const right = draw(state);
+  return {
+    /** Whether a state gives the right picture. @param {Object<string, any>} wanted */
+    async holds(wanted) {
+      Object.assign(player.state, wanted, { frame });
+      await player.load();
+      return difference(draw(wanted), right) <= SHARE;
+    },
+    /** Whether a text in place of a file's does; false for one with errors.
+     *  @param {string} file @param {string} text */
+    async holdsWith(file, text) {
+      const { errors } = await player.edit(file, text);
+      return !errors.length && difference(draw(state), right) <= SHARE;
+    },
+    close: () => player.close(),
+  };
+}
+
+// ── Judges a reader's work as tasks/judge.py does, and says how near a picture is as score.py
+
 /** @typedef {import("./schema.js").Value} Value */
 
 /** What a work is judged by.
