@@ -5,7 +5,7 @@ import { createSession } from "./session.js";
 import { leavesOf } from "./values.js";
 import { fill } from "./words.js";
 
-// ── What is said of a work that was checked, as playground/course/tasks/sentences.py does.
+// ── What is said of a work that was checked, as playground/course/tasks.py does.
 //
 // The words are those of [tasks] in course/labels, which a book's scripts hold.
 
