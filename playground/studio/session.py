@@ -187,8 +187,8 @@ class Session:
         """
         self._take_back()
         if saved is not None:
+            self.drafts.note_read(saved.edits)
             self.drafts.show(saved)
-            self.drafts.reads, self.drafts.read_edits = self.drafts.reads + 1, saved.edits
         self.drafts.open(path, keep=True)
 
     def stay(self) -> None:

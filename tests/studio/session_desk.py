@@ -63,7 +63,7 @@ class Harness:
     def start(self, name: str) -> None:
         """Open a window on a sketch."""
         self.sandbox = FakeSandbox()
-        memory = memory_of(self.folder / name / "sketch.toml", self.folder / "state")
+        self.memory = memory = memory_of(self.folder / name / "sketch.toml", self.folder / "state")
         result, _ = memory.read()
         self.session = Session(
             self.engine, self.folder / name, start=result.start, sandbox=self.sandbox, now=lambda: self.time

@@ -34,6 +34,7 @@ from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.replace_technique import with_texts
 from playground.studio.edits.edits import Draft, Edits, StoredEdits, first_draft, reload_draft, stored, taken
 from playground.studio.edits.history import CHECKED, Key, applied, changes_between, edits_of, state_of
+from playground.studio.edits.history import State, applied, changes_between, edits_of, state_of
 from playground.studio.edits.technique_cache import TechniqueCache
 from playground.studio.picture.gestures import suns_of, turned_sun
 from playground.studio.reload.dependencies import watched
@@ -118,7 +119,7 @@ class Drafts:
         self.started = 0.0  # when what is coming began to be read
         self.sandbox_seconds = 0.0  # [s] that the sandbox took for it
         self.reads = 0  # how often what is shown was replaced by what its files say now
-        self.read_edits = Edits()  # those left when that was done last, without what was chosen meanwhile
+        self.read_changes: State = {}  # what that took from the edits last, and not the user
         self.sandboxed = checks.sandbox is not None
         self._checks = checks
         self._drawn = drawn
@@ -282,12 +283,16 @@ class Drafts:
                 self._saved, notes = reload_draft(draft, self._saved.file)
             self._propose(notes)
 
+    def note_read(self, edits: Edits) -> None:
+        """Take in that the files were read, which left these of the edits that are shown."""
+        self.reads += 1
+        _, self.read_changes = changes_between(self.shown.edits if self.shown else Edits(), edits)
+
     def drawn_well(self) -> None:
         """Replace what is shown by what was coming: it has been drawn."""
         assert self.coming is not None
         if self.shown is None or self.shown.file is not self.coming.file:
-            self.reads += 1
-            self.read_edits = (self._saved or self.coming).edits
+            self.note_read((self._saved or self.coming).edits)
         self.shown, self.opening = self.coming, False
         self.notes.extend(self._coming_notes)
         self._drop_coming()

@@ -110,14 +110,15 @@ class History:
         *,
         held: bool,
         now: float,
-        read: Edits | None = None,
+        read: State | None = None,
         is_idle: bool = False,
     ) -> None:
         """Take in the state at the end of a frame.
 
-        ``of`` counts how often the files were read: another number is a reload, which left the edits
-        ``read``. ``held``: a mouse button is down. ``now``: seconds of any clock. ``is_idle``: nothing
-        is being checked, so that an undo which has not come by now never will: it is no longer done.
+        ``of`` counts how often the files were read: another number is a reload, which alone changed
+        ``read`` of the edits; all that differs where that is not known. ``held``: a mouse button is
+        down. ``now``: seconds of any clock. ``is_idle``: nothing is being checked, so that an undo which
+        has not come by now never will: it is no longer done.
         """
         if self._open and not held:
             self._close()
@@ -126,7 +127,7 @@ class History:
         assert self._state is not None
         self._latest = latest
         if before is not None and of != self._of:
-            before = state_of(edits if read is None else read, steps)
+            before = state_of(edits, steps) if read is None else applied(before, read)
         self._of = of
         if before is None:
             return

@@ -53,7 +53,7 @@ class Undo:
         session, self.held = self.session, held
         if session.shown is not None:
             edits, drafts, now = session.shown.edits, session.drafts, self.notices.now()
-            steps, read = session.view.steps, drafts.read_edits
+            steps, read = session.view.steps, drafts.read_changes
             is_idle = drafts.stage in (ReloadStage.NONE, ReloadStage.FAILED)
             self.history.look(edits, steps, drafts.reads, held=held, now=now, read=read, is_idle=is_idle)
 
@@ -126,9 +126,8 @@ class Undo:
         time = values.pop(("time", ""), None)
         if isinstance(time, float):
             session.clock.time = time
-        stops = steps_of(values)
-        for path in {*session.view.steps, *stops}:
-            session.stop_at(path, stops.get(path, -1))
+        for path, step in steps_of(changes).items():
+            session.view.stop_at(path, step)
         return True
 
     # ── time ─────────────────────────────────────────────────────────────────
