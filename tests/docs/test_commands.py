@@ -47,7 +47,7 @@ NOT_RUN = {
     r"playground shots review.*": "serves until it is stopped: tests/verify/report/test_review.py",
     r"playground shots accept .*": "needs a shot that failed: tests/verify/report/test_accept.py",
     r"playground lsp.*": "serves until its editor ends: tests/lsp",
-    r"playground live -": "reads a pipe or the clipboard: tests/studio/test_window_paste.py",
+    r"playground live -": "reads a pipe or the clipboard: tests/studio/test_window.py",
     r"playground reduce my-land --shot morning": "needs a reference that fails: verify/reduce/test_reduce.py",
     r"playground reduce my-land --against .*": "takes minutes: test_two_environments_that_differ does it",
     r"playground reduce my-land --command .*": "is-good is the user's: test_a_command_judges_and_the_folder",

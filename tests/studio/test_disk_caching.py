@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import moderngl
-import numpy as np
 import pytest
 
 from playground.engine.disk_cache import listed
@@ -24,17 +22,7 @@ from playground.studio.problems.non_finite import REST, FiniteWatch
 from playground.studio.session import Session
 
 from ..sketch_texts import map_of, passes
-from .screen import ON_LINUX, Program, Screen, script
 
-SLOW = """// slow.glsl -- takes far longer than to read it from a disk
-#pragma kernel(output = "height:r32f")
-uniform float level = 0.5; //! slider(-1, 1) How high
-float kernel(ivec2 texel) {
-    float sum = 0.0;
-    for (int i = 0; i < 4000; i++) sum += sin(float(texel.x * i) * 0.01 + sum);
-    return level * fract(sum);
-}
-"""
 HEIGHT = """// height.glsl -- cheap
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(-1, 1) How high
@@ -50,7 +38,6 @@ SKETCH = (
     + passes(low="./height", height=("./raised", 'inputs = { low = "low:height" }'))
     + map_of("height", channel="red")
 )
-RUN = script((500, 400), cache_limit=2**28)
 
 
 class Harness:
@@ -232,45 +219,6 @@ def test_without_a_limit_there_is_no_store(harness: Harness, tmp_path: Path) -> 
     harness.close()
     harness.session = None
     assert not (tmp_path / "land").exists()
-
-
-@pytest.mark.slow
-class TestWindow:
-    """The real window, twice."""
-
-    pytestmark = ON_LINUX
-
-    def test_a_window_reopens_from_the_disk(self, tmp_path: Path) -> None:
-        folder = tmp_path / "sketch"
-        folder.mkdir()
-        text = SKETCH.replace("size = 33", "size = 513").replace("./height", "./slow")
-        for name, source in (("slow.glsl", SLOW), ("raised.glsl", RAISED), ("sketch.toml", text)):
-            (folder / name).write_text(source, encoding="utf-8")
-        screens = tmp_path / "screen"
-        screens.mkdir()
-        screen = Screen(screens, 600, 500)
-        try:
-            command = [sys.executable, "-c", RUN, str(folder)]
-            first = Program(screen, tmp_path, command, tmp_path)
-            try:
-                now = first.wait(lambda now: now["picture"])
-                assert now["runs"]["low"] >= 1
-                seen = now["picture"]
-                land = tmp_path / "cache" / "terrain-shader-playground" / "land"
-                first.wait(lambda _: list(land.glob("*.land")))
-                pixels = screen.pixels()
-            finally:
-                first.close()
-            (tmp_path / "status.jsonl").unlink()
-            second = Program(screen, tmp_path, command, tmp_path)
-            try:
-                now = second.wait(lambda now: now["picture"])
-                assert now["picture"] == seen and "low" not in now["runs"]
-                assert np.mean(screen.pixels() == pixels) > 0.95, "the panel's figures aside"
-            finally:
-                second.close()
-        finally:
-            screen.close()
 
 
 def test_cached_terrain_is_identified_by_itself_not_its_texture(harness: Harness) -> None:

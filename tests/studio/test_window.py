@@ -25,6 +25,7 @@ from playground.errors import ContextError
 from playground.sketch.load import load
 from playground.studio.app import run, title_of
 from playground.studio.channels.channels import channels
+from playground.studio.window_place import WindowPlacement, on_screen
 
 from ..data.test_bounds import npz
 from ..sketch_texts import map_of, passes
@@ -33,7 +34,7 @@ from .screen import HILLS, LIMIT, ON_LINUX, ROOT, Program, Screen, script
 
 pytestmark = ON_LINUX
 SCREEN = 1000, 700  # [pixels]
-SIZE = WIDTH, HEIGHT = 900, 600
+SIZE = WIDTH, HEIGHT = 900, 640
 PANEL = 330  # [pixels] at scale 1
 MIDDLE = 600, 150
 
@@ -543,14 +544,15 @@ def test_tour_of_surviving(screen: Screen, tmp_path: Path) -> None:
         app.do("mousemove", 650, 350)
         nearer = a_lost_context_costs_nothing_but_a_moment(app)
         memories = tmp_path / "state" / "terrain-shader-playground" / "sessions"
-        assert soon(lambda: any('"distance"' in p.read_text("utf-8") for p in memories.glob("*.json")))
+        texts = ("distance", "620")
+        assert soon(lambda: any(all(t in p.read_text() for t in texts) for p in memories.glob("*.json")))
         app.process.kill()
         app.process.wait(60)
         app.close()
 
         app = App(screen, tmp_path, "--remembered")
-        app.shows(nearer)
         assert app.geometry() == (210, 150, 620, 410), "it opens where it was"
+        app.shows(nearer)
         app.ask("windowmove", "--sync", app.window(), "900", "600")  # most of it beyond the screen
         app.do("mousemove", 950, 650, "key", "r")
         app.changes(nearer)
@@ -829,3 +831,37 @@ def test_without_a_display_it_says_so_in_one_sentence(
         run(file)
     assert caught.value.exit_status == 2 and "\n" not in str(caught.value)
     assert "Traceback" not in capfd.readouterr().err
+
+
+def test_what_is_dropped_is_taken_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    listening = []
+    monkeypatch.setattr("glfw.set_drop_callback", lambda handle, act: listening.append((handle, act)))
+    handles = ["first"]
+    window_placement = WindowPlacement(lambda: handles[0])
+    assert window_placement.dropped() == []
+    listening[0][1]("first", ["/a/b.png", "/c"])
+    assert window_placement.dropped() == [Path("/a/b.png"), Path("/c")] and window_placement.dropped() == []
+    handles[0] = "second"  # the window was opened again
+    window_placement.dropped()
+    assert [handle for handle, _ in listening] == ["first", "second"]
+
+
+ONE, OTHER = (0, 0, 1920, 1080), (1920, -200, 1280, 1024)  # screens
+
+
+@pytest.mark.parametrize(
+    ("window", "areas", "expected"),
+    [
+        ((100, 200, 800, 600), [ONE], (100, 200)),
+        ((1500, 100, 800, 600), [ONE, OTHER], (1500, 100)),  # on both, and all of it
+        ((-50, 700, 800, 600), [ONE], (0, 480)),
+        ((1900, 100, 800, 600), [ONE], (1120, 100)),
+        ((2500, 300, 800, 600), [ONE], (1120, 300)),  # its screen is gone
+        ((2500, 300, 800, 600), [ONE, OTHER], (2400, 224)),
+        ((-3000, -3000, 800, 600), [OTHER], (1920, -200)),
+        ((50, 50, 3000, 2000), [ONE], (0, 0)),  # larger than the screen: its title bar shows
+        ((50, 50, 800, 600), [], (50, 50)),
+    ],
+)
+def test_a_window_comes_back_where_a_screen_shows_it(window, areas, expected):
+    assert on_screen(window, areas) == expected

@@ -12,14 +12,15 @@ import random
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from .saves import SAVES, save_through_a_link
 from .screen import ON_LINUX, Program, Screen
 
-SAVES = int(os.environ.get("SOAK", "60"))
+COUNT = int(os.environ.get("SOAK", "60"))
 SEED = int(os.environ.get("SOAK_SEED", "1"))
 RUN = """
 import sys
@@ -85,66 +86,7 @@ HOSTILE: dict[str, tuple[bytes, ...]] = {
 }
 
 pytestmark = [*ON_LINUX, pytest.mark.slow]
-Save = Callable[[Path, bytes, random.Random], None]
-
-
-def in_place(path: Path, data: bytes, _: random.Random) -> None:
-    path.write_bytes(data)
-
-
-def by_rename(path: Path, data: bytes, _: random.Random) -> None:
-    neighbour = path.with_name(f".{path.name}.swp")
-    neighbour.write_bytes(data)
-    neighbour.replace(path)
-
-
-def delete_and_create(path: Path, data: bytes, rng: random.Random) -> None:
-    path.unlink()
-    time.sleep(rng.uniform(0.05, 0.5))
-    path.write_bytes(data)
-
-
-def truncate_and_write_twice(path: Path, data: bytes, rng: random.Random) -> None:
-    with path.open("wb") as file:
-        time.sleep(rng.uniform(0.0, 0.1))
-        file.write(data[: len(data) // 2])
-        file.flush()
-        time.sleep(rng.uniform(0.0, 0.1))
-        file.write(data[len(data) // 2 :])
-
-
-def through_a_link(path: Path, data: bytes, rng: random.Random) -> None:
-    """Write what a link leads to; where there is none yet, or at random, put another link in its place."""
-    if path.is_symlink() and rng.random() < 0.5:
-        path.resolve().write_bytes(data)
-        return
-    real = path.with_name(
-        f"real-{time.monotonic_ns()}-{path.name}"
-    )  # beside it: a sketch stays in its folder
-    real.write_bytes(data)
-    link = path.with_name(f".{path.name}.link")
-    link.symlink_to(real)
-    link.replace(path)
-
-
-def as_vim(path: Path, data: bytes, _: random.Random) -> None:
-    """Try whether the folder takes files, put the old one aside, write, and take the backup away."""
-    probe, backup = path.with_name("4913"), path.with_name(f"{path.name}~")
-    probe.write_bytes(b"")
-    probe.unlink()
-    path.replace(backup)
-    path.write_bytes(data)
-    backup.unlink()
-
-
-STYLES: tuple[Save, ...] = (
-    in_place,
-    by_rename,
-    delete_and_create,
-    truncate_and_write_twice,
-    through_a_link,
-    as_vim,
-)
+STYLES = (*SAVES, save_through_a_link)
 
 
 SCREEN = 640, 420  # [pixels]
@@ -167,15 +109,19 @@ def window(screen: Screen, tmp_path: Path) -> Iterator[Program]:
 def test_window_survives_every_save_and_shows_last_good_one(window: Program, tmp_path: Path) -> None:
     rng, home = random.Random(SEED), tmp_path / "sketch"
     names = learned(window, home)
+
+    def pause() -> None:
+        time.sleep(rng.uniform(0.0, 0.3))
+
     assert len(set(names.values())) == len(FILES) * (GOOD - 1) + 1, "each good text has its own picture"
     counts: Counter[str] = Counter()
     good = window.now()["picture"]
-    for _ in range(SAVES):
+    for _ in range(COUNT):
         save, name = rng.choice(STYLES), rng.choice(list(FILES))
         path = home / name
         if rng.random() < 0.5:
             kind = "sketch.toml" if name == "sketch.toml" else "shader"
-            save(path, rng.choice(HOSTILE[kind]), rng)
+            save(path, rng.choice(HOSTILE[kind]), pause)
             counts[f"hostile, {save.__name__}"] += 1
             if rng.random() < 0.7:
                 now = window.wait(lambda now: now["error"] and now["stage"] in ("NONE", "FAILED"))
@@ -183,14 +129,14 @@ def test_window_survives_every_save_and_shows_last_good_one(window: Program, tmp
                 counts["hostile, waited for"] += 1
             else:
                 time.sleep(rng.uniform(0.0, 0.3))
-            rng.choice(STYLES)(path, FILES[name].format(n=1).encode(), rng)
+            rng.choice(STYLES)(path, FILES[name].format(n=1).encode(), pause)
             good = settled(window, names[name, 1])
         else:
             number = rng.randint(1, GOOD)
-            save(path, FILES[name].format(n=number).encode(), rng)
+            save(path, FILES[name].format(n=number).encode(), pause)
             counts[f"good, {save.__name__}"] += 1
             good = settled(window, names[name, number])
-            rng.choice(STYLES)(path, FILES[name].format(n=1).encode(), rng)
+            rng.choice(STYLES)(path, FILES[name].format(n=1).encode(), pause)
             good = settled(window, names[name, 1])
         counts["good, shown"] += 1
     log = window.complaint()
