@@ -47,14 +47,14 @@ LEVEL, ELEVATION = "height.level", "data.elevation"
 class Harness:
     """Two sketches, "one" and "two", a session on the first, and its sandbox."""
 
-    def __init__(self, folder: Path, engine: Engine) -> None:
+    def __init__(self, folder: Path, engine: Engine, sketch: str = SKETCH) -> None:
         self.folder, self.engine, self.time = folder, engine, 0.0
         for name in ("one", "two"):
             (folder / name).mkdir()
             self.write(f"{name}/hills.glsl", KERNEL)
             self.write(f"{name}/dunes.glsl", KERNEL.replace("float(texel.x)", "float(texel.y)"))
             self.write(f"{name}/add.glsl", ADD)
-            self.write(f"{name}/sketch.toml", SKETCH)
+            self.write(f"{name}/sketch.toml", sketch)
             for seed, file in enumerate(("a.npy", "b.npy")):
                 np.save(folder / name / file, np.random.default_rng(seed).random((9, 9), np.float32))
         self.sessions: list[Session] = []

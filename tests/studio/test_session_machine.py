@@ -34,7 +34,7 @@ from playground.studio.reload.reload_stages import ReloadStage
 
 from ..loading import load
 from ..spread import git
-from .session_desk import BAD, ELEVATION, GOOD, LEVEL, SIZE, Harness
+from .session_desk import BAD, ELEVATION, GOOD, LEVEL, SIZE, SKETCH, Harness
 
 FILE_LEVEL = 0.25
 TECHNIQUES = ("./hills", "./dunes", "generation/white_noise")
@@ -104,7 +104,9 @@ class SessionMachine(RuleBasedStateMachine):
 
     def __init__(self) -> None:
         super().__init__()
-        self.harness = Harness(Path(tempfile.mkdtemp(dir=self.folder)), self.engine)
+        set_level = 'use = "./hills"\nset = { level = 0.25 }\n'
+        sketch = SKETCH.replace('use = "./hills"\n', set_level)
+        self.harness = Harness(Path(tempfile.mkdtemp(dir=self.folder)), self.engine, sketch)
         self.engines: list[Engine] = []
         self.models = {"one": Model(), "two": Model()}
         self.shown = self.opened = "one"
@@ -185,6 +187,14 @@ class SessionMachine(RuleBasedStateMachine):
         before, model.size = model.size, size
         self.save(f"size = {before}\n", f"size = {size}\n")
 
+    @precondition(lambda self: not self.is_broken and LOCK not in self.models[self.opened].state)
+    @rule(level=st.sampled_from((0.25, 0.5)))
+    def save_level(self, level: float) -> None:
+        """The file's word goes before what was set, unless that is set again."""
+        model = self.models[self.opened]
+        before, model.level = model.level, level
+        self.save(f"level = {before}", f"level = {level}")
+
     @precondition(lambda self: not self.is_broken)
     @rule()
     def break_file(self) -> None:
@@ -236,6 +246,8 @@ class SessionMachine(RuleBasedStateMachine):
 
     @rule(locked=st.booleans())
     def lock(self, locked: bool) -> None:
+        if self.model.level != self.model.drawn_level:
+            return  # what the file says next would be kept away
         self.harness.drafts.lock(LEVEL, locked)
         self.edit_now({LOCK: locked or None})
         self.frame()
