@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import random
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -140,25 +138,3 @@ class Harness:
     def messages(self) -> str:
         self.bench.take_notes()
         return "; ".join(notice.text for notice in self.bench.notices.items)
-
-
-class RandomPlayer:
-    """Does one random thing after another at a desk, each an undo step where it edits."""
-
-    acts: list[Callable[[], object]]
-
-    def __init__(self, harness: Harness, seed: int) -> None:
-        self.harness, self.random, self.done = harness, random.Random(seed), list[str]()
-
-    def play(self, count: int) -> None:
-        for _ in range(count):
-            act = self.random.choice(self.acts)
-            act()
-            self.harness.bench.undo.record()
-            self.done.append(act.__name__)
-
-    def pass_check(self) -> None:
-        self.harness.answer(GOOD)
-
-    def fail_check(self) -> None:
-        self.harness.answer(BAD)

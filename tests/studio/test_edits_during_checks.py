@@ -8,64 +8,12 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.sketch.assign import values_of
-from playground.sketch.model import Camera
 from playground.studio.compare.compare import Compare
 from playground.studio.edits.edits import Edits
 
 from .session_desk import ADD, BAD, ELEVATION, GOOD, KERNEL, LEVEL, Harness
 
 # ── another sketch is being opened ───────────────────────────────────────────
-
-
-@pytest.mark.parametrize("how", ["folder", "file"])
-def test_a_dropped_sketch_has_its_remembered_edits(harness: Harness, how: str) -> None:
-    harness.drafts.set(LEVEL, 0.5)
-    harness.frame()
-    dropped = harness.folder / "two"
-    harness.drops.take([dropped if how == "folder" else dropped / "sketch.toml"])
-    harness.answer(GOOD)
-    assert (harness.name, harness.level) == ("two", 0.25)
-    harness.drafts.set(LEVEL, 0.75)
-    harness.frame()
-    harness.drops.take([harness.folder / "one"])
-    harness.answer(GOOD)
-    assert (harness.name, harness.level) == ("one", 0.5)
-    harness.close()
-    for name, level in (("one", 0.5), ("two", 0.75)):
-        harness.start(name)
-        assert harness.level == level
-        harness.close()
-
-
-def test_an_edit_belongs_to_the_sketch_that_is_shown(harness: Harness) -> None:
-    harness.bench.commands.open(harness.folder / "two")
-    assert harness.drafts.testing and harness.name == "one"
-    harness.drafts.set(LEVEL, 0.5)
-    harness.drafts.set_camera(Camera(azimuth=3.0))
-    harness.drafts.lock(LEVEL, True)
-    harness.frame()
-    assert harness.level == 0.5
-    harness.answer(GOOD)
-    assert (harness.name, harness.level) == ("two", 0.25) and harness.session.shown is not None
-    assert harness.session.shown.sketch == harness.session.shown.file
-    harness.bench.undo.undo()
-    assert "nothing to undo" in harness.messages and harness.level == 0.25
-    harness.close()
-    harness.start("one")
-    assert harness.level == 0.5 and harness.session.shown is not None
-    assert harness.session.shown.edits.locked == (LEVEL,)
-
-
-def test_edit_in_frame_of_sketch_switch_is_remembered(harness: Harness) -> None:
-    harness.bench.commands.open(harness.folder / "two")
-    harness.frame()
-    harness.drafts.set(LEVEL, 0.5)
-    harness.session.stop_at("height", 2)
-    harness.answer(GOOD)
-    assert (harness.name, harness.level) == ("two", 0.25)
-    harness.close()
-    harness.start("one")
-    assert harness.level == 0.5 and harness.session.view.steps == {"height": 2}
 
 
 def test_staying_restores_map_stopped_repeats_and_clock(harness: Harness) -> None:
@@ -81,33 +29,6 @@ def test_staying_restores_map_stopped_repeats_and_clock(harness: Harness) -> Non
     assert harness.name == "one" and view.steps == {"height": 2}
     assert view.map is not None and view.map.ref == "height:height"
     assert (clock.time, clock.playing) == (3.0, False)
-
-
-def test_failed_open_keeps_sketch_edits_and_undo(harness: Harness) -> None:
-    harness.session.stop_at("height", 2)
-    harness.drafts.set(LEVEL, 0.5)
-    harness.frame()
-    harness.write("two/hills.glsl", KERNEL.replace("level *", "levle *"))
-    harness.bench.commands.open(harness.folder / "two")
-    harness.answer(BAD)
-    assert "driver crashed" in str(harness.session.error) and (harness.name, harness.level) == ("one", 0.5)
-    assert harness.session.view.steps == {"height": 2}
-    harness.drafts.set(LEVEL, 0.75)
-    harness.frame()
-    harness.bench.undo.undo()
-    harness.frame()
-    assert harness.level == 0.5
-    harness.bench.undo.undo()
-    harness.frame()
-    assert harness.level == 0.25
-    harness.drafts.set(LEVEL, 0.625)
-    harness.frame()
-    harness.save("levle", "level", "two/hills.glsl")
-    harness.answer(GOOD)
-    assert (harness.name, harness.level, harness.session.view.steps) == ("two", 0.25, {})
-    harness.close()
-    harness.start("one")
-    assert harness.level == 0.625
 
 
 def test_undrawable_sketch_keeps_view_of_shown_one(any_engine: Engine, harness: Harness) -> None:
@@ -134,21 +55,6 @@ def test_a_path_without_a_sketch_changes_nothing(harness: Harness) -> None:
     harness.bench.undo.undo()
     harness.frame()
     assert harness.level == 0.25
-
-
-def test_reopened_shown_sketch_keeps_edits_and_undo(harness: Harness) -> None:
-    harness.drafts.set(LEVEL, 0.5)
-    harness.frame()
-    harness.bench.commands.open(harness.folder / "two")
-    harness.bench.commands.open(harness.folder / "one")
-    harness.drafts.set(LEVEL, 0.75)
-    harness.frame()
-    harness.answer(GOOD)
-    assert (harness.name, harness.level, harness.session.path.parent.name) == ("one", 0.75, "one")
-    for level in (0.5, 0.25):
-        harness.bench.undo.undo()
-        harness.frame()
-        assert harness.level == level
 
 
 def test_edits_needing_check_are_refused_until_sketch_opens(harness: Harness) -> None:
@@ -233,20 +139,6 @@ PAIRS = [
 ]
 
 
-@pytest.mark.parametrize("changes", [*PAIRS, ("technique", "data", "save"), ("save", "data", "technique")])
-def test_what_meets_during_a_check_is_all_taken(harness: Harness, changes: tuple[str, ...]) -> None:
-    for what in changes:
-        change(harness, what)
-        harness.frame()
-        assert harness.drafts.testing
-    harness.drafts.set(LEVEL, 0.5)
-    harness.answer(GOOD)
-    assert harness.session.error is None and harness.level == 0.5
-    assert harness.size == (17 if "save" in changes else 9)
-    assert harness.technique == ("./dunes" if "technique" in changes else "./hills")
-    assert harness.elevation == ("b.npy" if "data" in changes else "a.npy")
-
-
 @pytest.mark.parametrize(("first", "second"), PAIRS)
 def test_what_fails_is_named_and_the_rest_is_taken(harness: Harness, first: str, second: str) -> None:
     change(harness, first)
@@ -277,65 +169,6 @@ def test_failed_save_stays_error_when_technique_is_switched(harness: Harness) ->
     assert (harness.technique, harness.size) == ("./dunes", 17) and harness.session.error is None
 
 
-def test_a_choice_waits_for_a_file_that_cannot_be_read(harness: Harness) -> None:
-    harness.drafts.choose("height", "./dunes")
-    harness.save("[view]", "[view")
-    assert harness.session.error is not None
-    harness.frame()
-    harness.save("[view", "[view]")
-    harness.answer(GOOD)
-    assert harness.session.error is None and harness.technique == "./dunes"
-
-
-def test_of_two_choices_for_a_pass_the_last_good_one_counts(harness: Harness) -> None:
-    for use in ("generation/white_noise", "./dunes"):
-        harness.drafts.choose("height", use)
-    harness.save("size = 9", "size = 17")
-    harness.answer(BAD)
-    assert "./dunes is not taken" in harness.messages
-    harness.answer(GOOD)
-    assert (harness.technique, harness.size) == ("generation/white_noise", 17)
-
-
-def test_what_is_chosen_with_a_save_is_an_undo_step(harness: Harness) -> None:
-    harness.drafts.choose("height", "./dunes")
-    harness.save("size = 9", "size = 17")
-    harness.answer(GOOD)
-    harness.frame()
-    assert harness.bench.undo.history.done == 1
-    harness.bench.undo.undo()
-    harness.answer(GOOD)
-    assert (harness.technique, harness.size) == ("./hills", 17)
-
-
-@pytest.mark.parametrize("how", ["fails", "is taken back"])
-def test_an_undo_that_does_not_come_is_no_longer_done(harness: Harness, how: str) -> None:
-    harness.drafts.choose("height", "./dunes")
-    harness.answer(GOOD)
-    harness.save("size = 9", "size = 17")
-    harness.answer(GOOD)
-    undo = harness.bench.undo
-    undo.undo()
-    assert undo.history.done == 0 and harness.drafts.testing
-    if how == "is taken back":
-        harness.drafts.choose("height", "./dunes")
-    harness.answer(BAD)
-    harness.frame()
-    assert undo.history.done == 1 and harness.technique == "./dunes"
-    undo.undo()
-    harness.answer(GOOD)
-    harness.frame()
-    assert undo.history.done == 0 and harness.technique == "./hills"
-
-
-def test_a_preset_during_a_check_leaves_what_is_chosen(harness: Harness) -> None:
-    harness.drafts.set(ELEVATION, harness.file("b.npy"))
-    harness.bench.commands.set_all("Preset", {LEVEL: 0.5})
-    harness.drafts.unset(LEVEL)
-    harness.answer(GOOD)
-    assert (harness.elevation, harness.level) == ("b.npy", 0.25)
-
-
 def test_texts_and_a_technique_that_come_together_are_both_shown(harness: Harness) -> None:
     """As a lesson's figure of the sketch that is open does it."""
     text = ADD.replace("uniform", "uniform float share = 0.5; //! slider(0, 1)\nuniform", 1)
@@ -344,32 +177,6 @@ def test_texts_and_a_technique_that_come_together_are_both_shown(harness: Harnes
     harness.answer(GOOD)
     assert harness.technique == "./dunes" and harness.session.sketch is not None
     assert values_of(harness.session.sketch)["sum.share"] == 0.5
-
-
-def test_a_technique_that_is_taken_back_during_its_check_is_gone(harness: Harness) -> None:
-    harness.drafts.choose("height", "./dunes")
-    harness.drafts.choose("height", "./hills")
-    harness.answer(BAD)
-    assert harness.session.error is None and harness.technique == "./hills" and not harness.drafts.testing
-
-
-def test_undo_and_redo_during_a_check(harness: Harness) -> None:
-    harness.drafts.choose("height", "./dunes")
-    harness.answer(GOOD)
-    harness.save("size = 9", "size = 17")
-    harness.answer(GOOD)
-    undo = harness.bench.undo
-    undo.undo()
-    assert harness.drafts.testing
-    undo.redo()
-    harness.answer(GOOD)
-    harness.frame()
-    assert harness.technique == "./dunes" and not harness.drafts.testing
-    undo.undo()
-    harness.save("size = 17", "size = 33")
-    harness.drafts.set(LEVEL, 0.5)
-    harness.answer(GOOD)
-    assert (harness.technique, harness.size, harness.level) == ("./hills", 33, 0.5)
 
 
 def save_after_keeping_a(harness: Harness) -> Compare:

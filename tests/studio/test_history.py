@@ -115,24 +115,6 @@ def test_everything_is_undone_and_done_again(harness: Harness) -> None:
     assert "nothing to undo" in harness.messages
 
 
-def test_undo_goes_on_after_a_reload_and_a_broken_one(harness: Harness) -> None:
-    harness.session.drafts.set("height.level", 0.5)
-    harness.frame()
-    terrain = harness.folder / "terrain.glsl"
-    for text in ("broken", KERNEL.replace("+ other", "- other")):
-        terrain.write_text(text, encoding="utf-8")
-        harness.session.drafts.reload()
-        harness.session.frame(SIZE)
-        harness.bench.undo.record()
-    harness.session.drafts.set("height.other", 0.75)
-    harness.frame()
-    assert (harness.value("level"), harness.value("other")) == (0.5, 0.75)
-    harness.bench.undo.undo()
-    assert (harness.value("level"), harness.value("other")) == (0.5, 0.0)
-    harness.bench.undo.undo()
-    assert (harness.value("level"), harness.value("other")) == (0.25, 0.0)
-
-
 def test_a_locked_parameter_is_left_by_presets(harness: Harness) -> None:
     harness.session.drafts.lock("height.level", True)
     harness.bench.commands.apply_preset("high")
@@ -239,17 +221,6 @@ def test_an_elevation_file_is_saved_as_a_sketch_beside_it(tmp_path, any_engine, 
     assert dict(saved.graph.find("weights").values)["rock_slope"] == (41.0 if edited else 30.0)
     harness.bench.commands.save_values()
     assert "nothing differs from the file" in harness.messages
-
-
-def test_another_sketch_begins_anew(harness: Harness, tmp_path: Path) -> None:
-    harness.session.drafts.set("height.level", 0.5)
-    other = tmp_path / "two" / "sketch.toml"
-    other.parent.mkdir()
-    for name in ("terrain.glsl", "sketch.toml"):
-        (other.parent / name).write_bytes((tmp_path / name).read_bytes())
-    harness.bench.commands.open(other)
-    harness.frame()
-    assert harness.value("level") == 0.25 and not harness.bench.undo.history.can_undo
 
 
 def test_a_step_that_fails_gives_its_name_to_no_other(harness: Harness) -> None:

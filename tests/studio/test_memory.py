@@ -210,32 +210,6 @@ def test_time_that_runs_is_written_now_and_then(place: Place) -> None:
     assert 4 <= len(set(written)) <= 6
 
 
-def test_what_the_file_says_anew_goes_before_what_was_set(place: Place) -> None:
-    session, autosave = place.start()
-    change_everything(session)
-    autosave.look((900, 600))
-    autosave.close()
-    text = SKETCH.replace('use = "./terrain"', 'use = "./terrain"\nset = { level = 0.5 }')
-    (place.sketch / "sketch.toml").write_text(text, encoding="utf-8")
-    again, _ = place.start()
-    values = values_of(again.sketch)
-    assert values["height.level"] == 0.5 and values["height.slope"] == (0.5, 0.25)
-    assert "height.level: the file's new value, 0.5, is taken" in again.notes
-
-
-def test_a_new_default_is_no_newer_word_than_what_was_set(place: Place) -> None:
-    session, autosave = place.start()
-    change_everything(session)
-    autosave.look((900, 600))
-    autosave.close()
-    text = TERRAIN.replace("level = 0.25", "level = 0.5").replace("vec2(1.0, 2.0)", "vec2(3.0, 2.0)")
-    (place.sketch / "terrain.glsl").write_text(text, encoding="utf-8")
-    again, _ = place.start()
-    values = values_of(again.sketch)
-    assert values["height.level"] == 0.75 and values["height.slope"] == (0.5, 0.25)
-    assert not again.notes
-
-
 SAYS = {  # what the sketch sets, and the terrain's default, when the user sets 0.75, and afterwards
     "another default": ("", 0.25, "", 0.5),
     "the same": ("level = 0.5", 0.25, "level = 0.5", 0.25),
@@ -373,25 +347,6 @@ def test_two_windows_on_one_sketch_do_not_fight(place: Place) -> None:
     two.close()
     result, _ = Memory(place.sketch / "sketch.toml", place.state).read()
     assert dict(result.edits.values) == {"height.level": 0.875}, "alone, it remembers"
-
-
-def test_each_sketch_opened_in_a_window_is_remembered_by_itself(place: Place) -> None:
-    session, autosave = place.start()
-    session.drafts.set("height.level", 0.5)
-    autosave.look((900, 600))
-    other = place.sketch / "other.toml"
-    other.write_text(SKETCH, encoding="utf-8")
-    session.drafts.path = other
-    session.drafts.reload()
-    session.drafts.set("height.level", 0.75)
-    session.frame(SIZE)
-    autosave.look((900, 600))
-    autosave.close()
-    written = [Memory(path, place.state).read()[0] for path in (place.sketch / "sketch.toml", other)]
-    assert [dict(result.edits.values) for result in written] == [
-        {"height.level": 0.5},
-        {"height.level": 0.75},
-    ]
 
 
 @pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root may write anywhere")

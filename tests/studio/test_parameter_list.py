@@ -217,24 +217,6 @@ class Harness:
         self.frame()
 
 
-def test_undo_and_redo_go_through_every_state() -> None:
-    harness, states = Harness(), [Edits()]
-    for n in range(5):
-        harness.set(f"p.{n % 2}", float(n))
-        states.append(harness.edits)
-    harness.edits = Edits(harness.edits.values, (("p", "x"),), Camera(azimuth=1.0), ("p.1",))
-    harness.frame()
-    states.append(harness.edits)
-    for state in reversed(states[:-1]):
-        harness.undo()
-        assert state_of(harness.edits, {}) == state_of(state, {})
-    assert not harness.history.can_undo and not harness.history.go(-1, lambda changes: True)
-    for state in states[1:]:
-        harness.redo()
-        assert state_of(harness.edits, {}) == state_of(state, {})
-    assert not harness.history.can_redo and len(harness.history.steps) == 6
-
-
 def test_a_drag_is_one_step_and_one_that_comes_back_is_none() -> None:
     harness = Harness()
     for n in range(10):
@@ -273,46 +255,6 @@ def test_new_step_clears_redo_and_oldest_steps_are_dropped() -> None:
     assert len(harness.history.steps) == 3 and not harness.history.can_redo
 
 
-def test_undo_keeps_unrelated_values_and_reload_adds_no_step() -> None:
-    harness = Harness()
-    harness.set("p.a", 1.0)
-    harness.set("p.b", 1.0)
-    harness.reads, harness.edits = 1, Edits((("p.b", 1.0),))  # a reload took p.a away
-    harness.frame()
-    assert len(harness.history.steps) == 2
-    harness.undo()
-    assert harness.edits == Edits()
-    harness.redo()
-    assert harness.edits == Edits((("p.b", 1.0),))
-
-
-def test_an_undo_that_takes_its_time_is_no_step() -> None:
-    harness = Harness()
-    harness.edits = Edits(techniques=(("p", "x"),))
-    harness.frame()
-    assert harness.history.go(-1, lambda changes: True)
-    harness.history.settle(harness.edits, {})  # nothing has come of it yet
-    harness.frame()
-    harness.edits = Edits()
-    harness.frame()
-    assert harness.history.done == 0 and harness.history.can_redo
-    harness.edits = Edits(techniques=(("p", "x"),))  # by the user, not by redo
-    harness.frame()
-    assert harness.history.done == 1 and not harness.history.can_redo
-
-
-def test_what_is_saved_into_the_file_can_be_undone() -> None:
-    harness = Harness()
-    harness.set("p.a", 0.9)
-    harness.history.saved({("value", "p.a"): 0.5})
-    harness.reads, harness.edits = 1, Edits()  # the reload that follows
-    harness.frame()
-    harness.undo()
-    assert harness.edits == Edits((("p.a", 0.5),)), "what the file said before"
-    harness.redo()
-    assert harness.edits == Edits((("p.a", 0.9),))
-
-
 def test_steps_have_names() -> None:
     harness = Harness()
     harness.set("p.a", 0.5)
@@ -335,13 +277,3 @@ def test_steps_have_names() -> None:
         "Lock P.A",
         "Time 1.00 s to 0.00 s",
     ]
-
-
-def test_a_step_that_is_refused_is_not_undone() -> None:
-    harness = Harness()
-    harness.set("p.a", 0.5)
-    assert not harness.history.go(-1, lambda changes: False)
-    assert harness.history.done == 1
-    harness.undo()
-    assert not harness.history.go(1, lambda changes: False)
-    assert harness.history.done == 0 and harness.history.can_redo

@@ -167,18 +167,6 @@ def test_error_is_reported_and_last_good_picture_stays_until_fix(
     np.testing.assert_array_equal(bench.picture(), before)
 
 
-def test_the_last_good_sketch_can_still_be_changed_by_the_user(bench: Bench) -> None:
-    before = bench.picture()
-    bench.change("terrain.glsl", "level * tilt", "levle * tilt")
-    bench.picture()
-    bench.session.drafts.set("height.level", 0.75)
-    assert not np.array_equal(bench.picture(), before)
-    assert bench.session.error is not None
-    bench.change("terrain.glsl", "levle * tilt", "level * tilt")
-    bench.picture()
-    assert values_of(bench.session.sketch)["height.level"] == 0.75
-
-
 def test_initially_broken_sketch_is_shown_once_fixed(tmp_path: Path, any_engine: Engine) -> None:
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     session = Session(any_engine, tmp_path)
@@ -306,27 +294,6 @@ def test_a_value_that_does_not_fit_becomes_a_note(bench: Bench) -> None:
     bench.session.drafts.set("height.levle", 0.5)
     assert values_of(bench.session.sketch)["height.level"] == 0.25
     assert "outside its range" in bench.session.notes[0] and "did you mean" in bench.session.notes[1]
-
-
-def test_presets_and_resets(bench: Bench) -> None:
-    before = bench.picture()
-    high = next(preset for preset in bench.session.sketch.presets if preset.name == "high")
-    bench.session.drafts.set_all(dict(high.values))
-    assert not np.array_equal(bench.picture(), before)
-    bench.session.reset_values()
-    np.testing.assert_array_equal(bench.picture(), before)
-    bench.session.drafts.set("height.level", 0.5)
-    bench.session.drafts.unset("height.level")
-    np.testing.assert_array_equal(bench.picture(), before)
-
-
-def test_another_technique_and_back(bench: Bench) -> None:
-    before = bench.picture()
-    bench.session.drafts.choose("height", "generation/diamond_square")
-    assert not np.array_equal(bench.picture(), before)
-    assert bench.session.sketch.graph.find("height").use == "generation/diamond_square"
-    bench.session.reset_values()
-    np.testing.assert_array_equal(bench.picture(), before)
 
 
 def test_a_technique_that_does_not_draw_leaves_the_one_there_was(bench: Bench) -> None:

@@ -130,24 +130,6 @@ def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
     assert "view.channel" in dict(session.shown.edits.values)
 
 
-def test_save_during_check_keeps_user_chosen_file(session: Session, folder: Path) -> None:
-    answer(session, SandboxReport(True))
-    other = str(folder / "other.npy")
-    for seed, text in enumerate((SKETCH, SKETCH.replace("100.0", "200.0"))):
-        session.drafts.set("height.elevation", str(folder / "terrain.npy"))
-        session.frame(SIZE)
-        np.save(folder / "other.npy", np.random.default_rng(seed).random((9, 9), np.float32))
-        session.drafts.set("height.elevation", other)
-        assert session.drafts.testing
-        (folder / "sketch.toml").write_text(text, encoding="utf-8")
-        session.drafts.reload()
-        assert session.drafts.testing, "it is tried with what was saved"
-        answer(session, SandboxReport(True))
-        assert session.error is None and session.shown is not None
-        assert dict(session.shown.edits.values)["height.elevation"] == other
-        assert session.shown.sketch.terrain.extent == ((100.0, 100.0) if text == SKETCH else (200.0, 200.0))
-
-
 @pytest.mark.parametrize("when", ["during its check", "after it"])
 def test_a_file_that_is_taken_back_has_no_verdict(session: Session, folder: Path, when: str) -> None:
     answer(session, SandboxReport(True))
