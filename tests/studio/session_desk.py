@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from playground.engine.engine import Engine
-from playground.engine.sandbox import SandboxReport
+from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import SandboxCrash
 from playground.sketch.assign import values_of
 from playground.studio.bench import Workbench
@@ -17,7 +17,6 @@ from playground.studio.interface import WindowControls
 from playground.studio.session import Session
 
 from ..sketch_texts import map_of, passes
-from .test_session import FakeSandbox
 
 SIZE = (32, 24)
 KERNEL = """#pragma kernel(output = "height:r32f", repeat = "4")
@@ -40,6 +39,21 @@ SKETCH = (
 )
 GOOD, BAD = SandboxReport(True), SandboxReport(False, SandboxCrash("the driver crashed"))
 LEVEL, ELEVATION = "height.level", "data.elevation"
+
+
+class FakeSandbox:
+    """A sandbox that answers when a test says so."""
+
+    def __init__(self) -> None:
+        self.requests: list[TrySketch] = []
+        self.answer: SandboxReport | None = None
+
+    def submit(self, request: TrySketch) -> None:
+        self.requests.append(request)
+
+    def poll(self) -> SandboxReport | None:
+        answer, self.answer = self.answer, None
+        return answer
 
 
 class Harness:

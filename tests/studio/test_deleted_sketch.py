@@ -18,7 +18,8 @@ from playground.studio.session import Session
 
 from .panel_desk import Bare, errors_of
 from .screen import ROOT
-from .test_session import KERNEL, SKETCH, TILT, FakeSandbox
+from .session_desk import FakeSandbox
+from .test_session import SLOPE
 
 
 def family(kind: type[PlaygroundError] = PlaygroundError) -> list[type[PlaygroundError]]:
@@ -30,7 +31,7 @@ def family(kind: type[PlaygroundError] = PlaygroundError) -> list[type[Playgroun
 def folder(tmp_path: Path) -> Path:
     home = tmp_path / "my-terrain"
     (home / "inc").mkdir(parents=True)
-    for name, text in {"terrain.glsl": KERNEL, "inc/tilt.glsl": TILT, "sketch.toml": SKETCH}.items():
+    for name, text in SLOPE.items():
         (home / name).write_text(text, encoding="utf-8")
     return home
 
@@ -133,7 +134,9 @@ with Engine(open_context()) as engine:
 """
     home = tmp_path / "here"
     home.mkdir()
-    (home / "sketch.toml").write_text(SKETCH.replace("./terrain", "generation/white_noise"), encoding="utf-8")
+    (home / "sketch.toml").write_text(
+        SLOPE["sketch.toml"].replace("./terrain", "generation/white_noise"), encoding="utf-8"
+    )
     done = subprocess.run(
         [sys.executable, "-c", script, "sketch.toml"],
         cwd=home,

@@ -11,7 +11,9 @@ from playground.sketch.assign import values_of
 from playground.studio.compare.compare import Compare
 from playground.studio.edits.edits import Edits
 
-from .session_desk import ADD, BAD, ELEVATION, GOOD, KERNEL, LEVEL, Harness
+from .session_desk import ADD as DESK_ADD
+from .session_desk import BAD, ELEVATION, GOOD, LEVEL, Harness
+from .session_desk import KERNEL as DESK_KERNEL
 
 # ── another sketch is being opened ───────────────────────────────────────────
 
@@ -34,7 +36,7 @@ def test_staying_restores_map_stopped_repeats_and_clock(harness: Harness) -> Non
 def test_undrawable_sketch_keeps_view_of_shown_one(any_engine: Engine, harness: Harness) -> None:
     harness.session.stop_at("height", 2)
     harness.frame()
-    harness.write("two/hills.glsl", KERNEL.replace("level *", "levle *"))
+    harness.write("two/hills.glsl", DESK_KERNEL.replace("level *", "levle *"))
     harness.bench.commands.open(harness.folder / "two")
     harness.answer(GOOD)  # the sandbox has no objection, the driver of this process has one
     assert harness.session.error is not None and harness.name == "one"
@@ -171,7 +173,7 @@ def test_failed_save_stays_error_when_technique_is_switched(harness: Harness) ->
 
 def test_texts_and_a_technique_that_come_together_are_both_shown(harness: Harness) -> None:
     """As a lesson's figure of the sketch that is open does it."""
-    text = ADD.replace("uniform", "uniform float share = 0.5; //! slider(0, 1)\nuniform", 1)
+    text = DESK_ADD.replace("uniform", "uniform float share = 0.5; //! slider(0, 1)\nuniform", 1)
     harness.drafts.read_as({str(harness.folder / "one/add.glsl"): text})
     harness.drafts.restore(Edits(techniques=(("height", "./dunes"),)))
     harness.answer(GOOD)

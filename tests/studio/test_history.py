@@ -11,13 +11,13 @@ import pytest
 from playground.engine.engine import Engine
 from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
-from playground.sketch.load import load
 from playground.sketch.model import Camera
 from playground.studio.actions import rounded
 from playground.studio.bench import Workbench
 from playground.studio.interface import WindowControls
 from playground.studio.session import Session
 
+from ..loading import load
 from ..sketch_texts import map_of_height
 
 SIZE = (48, 32)

@@ -12,7 +12,8 @@ from playground.studio.overlay import PATIENCE, checking_text
 from playground.studio.reload.watcher import Follower
 from playground.studio.session import Session
 
-from .test_session import KERNEL, SKETCH, TILT, FakeSandbox
+from .session_desk import FakeSandbox
+from .test_session import SLOPE
 
 
 class FakeWatcher:
@@ -32,7 +33,7 @@ class FakeWatcher:
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "inc").mkdir()
-    for name, text in {"terrain.glsl": KERNEL, "inc/tilt.glsl": TILT, "sketch.toml": SKETCH}.items():
+    for name, text in SLOPE.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     return tmp_path
 
@@ -48,12 +49,12 @@ def test_what_is_tried_is_named_and_timed(folder: Path, any_engine: Engine) -> N
         session.frame((32, 32))
         assert session.drafts.checking is None
 
-        (folder / "terrain.glsl").write_text(KERNEL.replace("0.25", "0.5"), encoding="utf-8")
+        (folder / "terrain.glsl").write_text(SLOPE["terrain.glsl"].replace("0.25", "0.5"), encoding="utf-8")
         watcher.changed = {folder / "terrain.glsl"}
         assert follower.take()
         clock[0] += 2.0
         assert session.drafts.checking == ("terrain.glsl", 2.0)
-        (folder / "inc/tilt.glsl").write_text(TILT.replace("x)", "y)"), encoding="utf-8")
+        (folder / "inc/tilt.glsl").write_text(SLOPE["inc/tilt.glsl"].replace("x)", "y)"), encoding="utf-8")
         watcher.changed = {folder / "terrain.glsl", folder / "inc" / "tilt.glsl", folder / "sketch.toml"}
         assert follower.take()
         subject = "sketch.toml, terrain.glsl and 1 more"

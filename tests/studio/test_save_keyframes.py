@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 from playground.errors import PlaygroundError, SketchError
-from playground.sketch.load import load
 from playground.sketch.model import Keyframe, Sketch
 from playground.studio.save.sketch_file import _without_lines, save_keyframes, with_keyframes
+
+from ..loading import load
 
 SKETCH = """format = 1  # ours
 size = 33

@@ -11,7 +11,7 @@ import pytest
 from playground.data.image_files import write_png
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
-from playground.engine.sandbox import SandboxReport, TrySketch
+from playground.engine.sandbox import SandboxReport
 from playground.errors import ContextError, SandboxTimeout, SketchError
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE, Camera
@@ -22,6 +22,7 @@ from playground.studio.session import Session
 
 from ..plans import plans_made_whole
 from ..sketch_texts import map_of_height
+from .session_desk import FakeSandbox
 
 SIZE = (64, 48)
 KERNEL = """// terrain.glsl -- a slope
@@ -41,6 +42,7 @@ SKETCH = (
     + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0 }\n'
 )
 
+SLOPE = {"terrain.glsl": KERNEL, "inc/tilt.glsl": TILT, "sketch.toml": SKETCH}
 SKETCH_3D = """format = 1
 size = 33
 [[pass]]
@@ -58,9 +60,8 @@ class Bench:
     def __init__(self, folder: Path, engine: Engine, sandbox: FakeSandbox | None = None) -> None:
         self.folder = folder
         (folder / "inc").mkdir()
-        self.write("terrain.glsl", KERNEL)
-        self.write("inc/tilt.glsl", TILT)
-        self.write("sketch.toml", SKETCH)
+        for name, text in SLOPE.items():
+            self.write(name, text)
         self.session = Session(engine, folder, sandbox=sandbox)
 
     def write(self, name: str, text: str) -> None:
@@ -77,21 +78,6 @@ class Bench:
         frame = self.session.read()
         assert frame is not None
         return frame.array
-
-
-class FakeSandbox:
-    """A sandbox that answers when a test says so."""
-
-    def __init__(self) -> None:
-        self.requests: list[TrySketch] = []
-        self.answer: SandboxReport | None = None
-
-    def submit(self, request: TrySketch) -> None:
-        self.requests.append(request)
-
-    def poll(self) -> SandboxReport | None:
-        answer, self.answer = self.answer, None
-        return answer
 
 
 @pytest.fixture

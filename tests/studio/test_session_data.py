@@ -23,7 +23,7 @@ from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 
 from ..sketch_texts import map_of, passes
-from .test_session import FakeSandbox
+from .session_desk import FakeSandbox
 
 SIZE = (32, 32)
 SKETCH = (

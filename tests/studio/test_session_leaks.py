@@ -15,7 +15,7 @@ from playground.engine.engine import Engine
 from playground.studio.picture import shown_picture
 from playground.studio.session import Session
 
-from ..sketch_texts import TERRAIN_IN_3D as SKETCH
+from ..sketch_texts import TERRAIN_IN_3D
 
 SIZE = (64, 36)
 TERRAIN = """#pragma kernel(output = "height:r32f", repeat = "3")
@@ -40,7 +40,7 @@ def test_memory_is_flat_over_five_hundred_reloads(
     When a picture is drawn in full, with a mesh of its own, is told, and does not depend on the clock.
     """
     monkeypatch.setattr(shown_picture, "REST", math.inf)
-    (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    (tmp_path / "sketch.toml").write_text(TERRAIN_IN_3D, encoding="utf-8")
     seen = []
     before = dict(+alive)
     with Engine(ctx) as engine:

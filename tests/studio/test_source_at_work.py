@@ -20,7 +20,7 @@ from playground.studio.paint.painting import Painting
 from playground.studio.session import Session
 
 from ..sketch_texts import map_of, passes
-from .test_session import FakeSandbox
+from .session_desk import FakeSandbox
 
 SOURCE = """#pragma source("slow", output = "height:r32f")
 uniform sampler2D given;   //! input("black")

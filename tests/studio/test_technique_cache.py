@@ -11,7 +11,8 @@ import pytest
 
 from playground.allowed_files import noting_places
 from playground.errors import PlaygroundError, SketchError
-from playground.sketch.load import load, load_with
+from playground.sketch.load import load as load_fresh
+from playground.sketch.load import load_with
 from playground.sketch.model import kernels_of
 from playground.studio.edits.technique_cache import TechniqueCache
 
@@ -99,9 +100,9 @@ def test_a_save_that_keeps_inode_size_and_times_is_seen(files: Files, name: str,
         after.st_size,
         after.st_mtime_ns,
     )
-    assert load_with(techniques.begin(), files.folder) == load(files.folder)
+    assert load_with(techniques.begin(), files.folder) == load_fresh(files.folder)
     path.write_text(text, encoding="utf-8")
-    assert load_with(techniques.begin(), files.folder) == load(files.folder)
+    assert load_with(techniques.begin(), files.folder) == load_fresh(files.folder)
 
 
 def test_a_save_that_changes_times_alone_keeps_a_technique(files: Files):
@@ -120,13 +121,13 @@ def test_a_file_that_comes_where_another_was_looked_for_is_seen(files: Files):
     with pytest.raises(SketchError, match="remove one"):
         load_with(techniques.begin(), files.folder)
     (files.folder / "inner.toml").unlink()
-    assert load_with(techniques.begin(), files.folder) == load(files.folder)
+    assert load_with(techniques.begin(), files.folder) == load_fresh(files.folder)
 
 
 def test_cached_load_notes_same_places_as_full_load(files: Files):
     techniques = TechniqueCache()
     with noting_places() as anew:
-        load(files.folder)
+        load_fresh(files.folder)
     for _ in range(2):
         with noting_places() as places:
             load_with(techniques.begin(), files.folder)
@@ -184,7 +185,7 @@ def test_after_any_saves_it_gives_what_a_reading_anew_gives(files: Files, seed: 
         with noting_places() as places:
             seen = result_of(lambda: load_with(techniques.begin(), files.folder))
         with noting_places() as expected:
-            assert seen == result_of(lambda: load(files.folder))
+            assert seen == result_of(lambda: load_fresh(files.folder))
         assert expected.keys() <= places.keys()
 
 
