@@ -9,12 +9,11 @@ that a fresh load says, and still show a picture of something that was there bef
 from __future__ import annotations
 
 import io
-import os
 import random
 import shutil
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -32,6 +31,7 @@ from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.session import Session
 
 from ..loading import load
+from .saves import SAVES, Pause
 
 SIZE = (24, 16)
 PATIENCE = 90.0  # [s] for the session to come to rest
@@ -153,75 +153,22 @@ class Folder:
         self.states.append(result)
 
 
-def save_in_place(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
-    folder.write(name, data)
+def save_twice(path: Path, data: bytes, pause: Pause) -> None:
+    for variant in (next(texts for name, texts in VARIANTS.items() if name.endswith(path.name))[-2], data):
+        path.write_bytes(variant)
+        pause()
 
 
-def save_by_rename(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
-    path = folder.path / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.tmp")
-    temporary.write_bytes(data)
-    rest()  # so that its time lies well before the moment when it takes the file's place
-    temporary.replace(path)
-    folder.note()
+def delete(path: Path, data: bytes, pause: Pause) -> None:
+    path.unlink(missing_ok=True)
 
 
-def save_by_deleting(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
-    delete(folder, name, data, rest)
-    rest()
-    folder.write(name, data)
+def delete_its_folder(path: Path, data: bytes, pause: Pause) -> None:
+    top = next(item for item in (path, *path.parents) if item.parent.name == "sketch")
+    shutil.rmtree(top, ignore_errors=True)  # nothing, where it is the file itself
 
 
-def save_with_a_backup(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
-    path = folder.path / name
-    if path.exists():
-        path.replace(path.with_name(f"{path.name}~"))
-        folder.note()
-    folder.write(name, data)
-
-
-def save_twice(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
-    for variant in (VARIANTS[name][-2], data):
-        folder.write(name, variant)
-        time.sleep(0.01)
-
-
-def save_in_halves(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
-    path = folder.path / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("wb", buffering=0) as file:
-        file.write(data[: len(data) // 2])
-        folder.note()
-        rest()
-        file.write(data[len(data) // 2 :])
-    folder.note()
-
-
-def save_with_an_old_time(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
-    """As unpacking an archive does, or a checkout that keeps times."""
-    path = folder.path / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.tmp")
-    temporary.write_bytes(data)
-    os.utime(temporary, (1e9, 1e9))
-    temporary.replace(path)
-    folder.note()
-
-
-def delete(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
-    (folder.path / name).unlink(missing_ok=True)
-    folder.note()
-
-
-def delete_its_folder(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
-    if "/" in name:
-        shutil.rmtree(folder.path / name.partition("/")[0], ignore_errors=True)
-        folder.note()
-
-
-WAYS = [save_in_place, save_by_rename, save_by_deleting, save_with_a_backup, save_twice, save_in_halves]
-WAYS = [*WAYS, *WAYS, save_with_an_old_time, delete, delete_its_folder]
+WAYS = [*SAVES, *SAVES, save_twice, save_twice, delete, delete_its_folder]
 
 
 class Truth:
@@ -270,6 +217,11 @@ class Run:
             self.frame()
             time.sleep(self.dice.choice([0.0, 0.001, 0.01]))
 
+    def pause(self) -> None:
+        """Keep what is on the disk just now, and let the session have some frames."""
+        self.folder.note()
+        self.rest()
+
     def play(self) -> list[str]:
         """Save this and that; return what was done."""
         done = []
@@ -278,8 +230,10 @@ class Run:
             way = self.dice.choice(WAYS)
             data = self.dice.choice([v for v in VARIANTS[name] if v])
             done.append(f"{way.__name__}({name}, {VARIANTS[name].index(data)})")
-            way(self.folder, name, data, self.rest)
-            self.rest()
+            path = self.folder.path / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            way(path, data, self.pause)
+            self.pause()
             if self.dice.random() < 0.2:
                 self.edit()
                 done.append(f"level = {self.levels[-1]}")

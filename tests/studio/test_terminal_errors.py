@@ -11,8 +11,8 @@ ONE, OTHER = Diagnostic("no name 'p'", "terrain.glsl", 3), Diagnostic("a ; is mi
 def test_each_error_is_reported_once_and_again_after_fix() -> None:
     printed: list[str] = []
     terminal = TerminalErrors(printed.append)
-    for errors in ([ONE], [ONE], [ONE, OTHER], [OTHER], [], [ONE], [ONE]):
-        terminal.take(errors)
+    for listed in ([ONE], [ONE], [ONE, OTHER], [OTHER], [], [ONE], [ONE]):
+        terminal.take(listed)
     assert printed == [str(ONE), str(OTHER), str(ONE)]
 
 

@@ -14,7 +14,14 @@ import pytest
 from playground.allowed_files import signature
 from playground.studio.reload.watcher import Watcher
 
+from .saves import SAVES, Save, save_by_rename, save_in_place
+
 LIMIT = 30.0  # [s]
+
+
+def pause() -> None:
+    """Let a moment pass between the steps of a save."""
+    time.sleep(0.01)
 
 
 class Watched:
@@ -62,44 +69,20 @@ def watched(tmp_path: Path) -> Iterator[Watched]:
     made.watcher.stop()
 
 
-def save_in_place(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
-
-
-def save_by_rename(path: Path, text: str) -> None:
-    temporary = path.with_name(f".{path.name}.tmp")
-    temporary.write_text(text, encoding="utf-8")
-    temporary.replace(path)
-
-
-def save_by_deleting(path: Path, text: str) -> None:
-    path.unlink()
-    time.sleep(0.01)
-    path.write_text(text, encoding="utf-8")
-
-
-def save_with_a_backup(path: Path, text: str) -> None:
-    path.rename(path.with_name(f"{path.name}~"))
-    path.write_text(text, encoding="utf-8")
-
-
-WAYS = [save_in_place, save_by_rename, save_by_deleting, save_with_a_backup]
-
-
-@pytest.mark.parametrize("save", WAYS, ids=lambda way: way.__name__)
-def test_every_way_of_saving_is_seen_again_and_again(watched: Watched, save) -> None:
+@pytest.mark.parametrize("save", SAVES, ids=lambda save: save.__name__)
+def test_every_way_of_saving_is_seen_again_and_again(watched: Watched, save: Save) -> None:
     for number in range(3):
-        save(watched.file, f"text {number}")
+        save(watched.file, f"text {number}".encode(), pause)
         assert watched.sees(watched.file)
-    save(watched.include, "another text")
+    save(watched.include, b"another text", pause)
     assert watched.sees(watched.include)
 
 
 def test_a_second_save_within_50_ms_is_seen(watched: Watched) -> None:
     for number in range(4):
-        save_in_place(watched.file, f"first {number}")
+        save_in_place(watched.file, f"first {number}".encode())
         time.sleep(0.02)
-        save_in_place(watched.file, f"second {number}")
+        save_in_place(watched.file, f"second {number}".encode())
         seen = ""
         end = time.monotonic() + LIMIT
         while seen != f"second {number}" and time.monotonic() < end:
@@ -111,8 +94,8 @@ def test_a_second_save_within_50_ms_is_seen(watched: Watched) -> None:
 
 @pytest.mark.slow
 def test_saving_what_was_there_is_no_change(watched: Watched) -> None:
-    for save in WAYS:
-        save(watched.file, "one")
+    for save in SAVES:
+        save(watched.file, b"one", pause)
     watched.file.touch()
     (watched.folder / "notes.txt").write_text("nobody follows this", encoding="utf-8")
     assert watched.sees_nothing()
@@ -120,25 +103,25 @@ def test_saving_what_was_there_is_no_change(watched: Watched) -> None:
 
 @pytest.mark.slow
 def test_a_change_that_is_undone_before_it_is_taken_is_none(watched: Watched) -> None:
-    save_in_place(watched.file, "two")
+    save_in_place(watched.file, b"two")
     assert watched.woken.wait(LIMIT)
     watched.woken.clear()
-    save_in_place(watched.file, "one")
+    save_in_place(watched.file, b"one")
     assert watched.sees_nothing()
-    save_in_place(watched.file, "two")
+    save_in_place(watched.file, b"two")
     assert watched.sees(watched.file)
 
 
 def test_a_deleted_file_is_a_change_and_so_is_its_return(watched: Watched) -> None:
     watched.file.unlink()
     assert watched.sees(watched.file)
-    save_in_place(watched.file, "back")
+    save_in_place(watched.file, b"back")
     assert watched.sees(watched.file)
 
 
 def test_a_new_shader_next_to_a_watched_one_is_reported(watched: Watched) -> None:
     new = watched.folder / "new.glsl"
-    save_in_place(new, "new")
+    save_in_place(new, b"new")
     assert watched.sees(new)
 
 
@@ -146,13 +129,13 @@ def test_a_new_shader_next_to_a_watched_one_is_reported(watched: Watched) -> Non
 def test_what_is_followed_may_change_at_any_time(watched: Watched) -> None:
     other = watched.folder / "other" / "sketch.toml"
     other.parent.mkdir()
-    save_in_place(other, "one")
+    save_in_place(other, b"one")
     watched.watcher.follow([watched.file, other])
-    save_in_place(other, "two")
+    save_in_place(other, b"two")
     assert watched.sees(other) and watched.is_idle()
-    save_in_place(watched.include, "nobody follows it any more")
+    save_in_place(watched.include, b"nobody follows it any more")
     assert watched.sees_nothing()
-    save_in_place(watched.file, "two")
+    save_in_place(watched.file, b"two")
     assert watched.sees(watched.file)
 
 
@@ -160,7 +143,7 @@ def test_a_change_between_reading_and_following_is_not_lost(watched: Watched) ->
     other = watched.folder / "late.toml"
     read_at = time.time()
     time.sleep(0.06)
-    save_in_place(other, "saved while it was being read")
+    save_in_place(other, b"saved while it was being read")
     watched.watcher.follow([watched.file, other], read_at=read_at)
     assert watched.sees(other)
 
@@ -178,10 +161,10 @@ def test_what_a_reader_saw_and_was_never_reported_is_reported(watched: Watched) 
 
 def test_old_dated_save_during_read_is_not_lost(watched: Watched) -> None:
     other = watched.folder / "late.toml"
-    save_in_place(other, "one")
+    save_in_place(other, b"one")
     read_at, read = time.time() + 1.0, {other: signature(other)}
     temporary = watched.folder / "unpacked.tmp"
-    save_in_place(temporary, "from an archive")
+    save_in_place(temporary, b"from an archive")
     os.utime(temporary, (1e9, 1e9))
     temporary.replace(other)
     watched.watcher.follow([watched.file, other], read_at=read_at, read=read)
@@ -200,15 +183,15 @@ def test_what_is_no_file_is_reported_and_saves_after_it_as_well(watched: Watched
     watched.watcher.follow([watched.include])
     watched.watcher.follow([watched.file, watched.include])  # which waits for no writer
     watched.file.unlink()
-    save_in_place(watched.file, "two")
+    save_in_place(watched.file, b"two")
     assert watched.sees(watched.file)
-    save_in_place(watched.file, "three")
+    save_in_place(watched.file, b"three")
     assert watched.sees(watched.file)
 
 
 def test_a_save_that_keeps_inode_size_and_time_is_seen(watched: Watched) -> None:
     before = watched.file.stat()
-    save_in_place(watched.file, "two")
+    save_in_place(watched.file, b"two")
     os.utime(watched.file, ns=(before.st_atime_ns, before.st_mtime_ns))
     assert watched.sees(watched.file)
 
@@ -218,9 +201,9 @@ def test_a_folder_that_vanishes_and_returns_is_found_again(watched: Watched) -> 
     shutil.rmtree(watched.include.parent)
     assert watched.sees(watched.include)
     watched.include.parent.mkdir()
-    save_in_place(watched.include, "back")
+    save_in_place(watched.include, b"back")
     assert watched.sees(watched.include)
-    save_in_place(watched.include, "and changed")
+    save_in_place(watched.include, b"and changed")
     assert watched.sees(watched.include)
 
 
@@ -228,12 +211,12 @@ def test_a_folder_that_vanishes_and_returns_is_found_again(watched: Watched) -> 
 def test_a_file_behind_a_link_is_followed(watched: Watched) -> None:
     real = watched.folder / "elsewhere" / "real.glsl"
     real.parent.mkdir()
-    save_in_place(real, "one")
+    save_in_place(real, b"one")
     link = watched.folder / "link.glsl"
     link.symlink_to(real)
     watched.watcher.follow([link])
     time.sleep(0.1)
-    save_by_rename(real, "two")
+    save_by_rename(real, b"two")
     assert watched.sees(link)
 
 
