@@ -11,11 +11,13 @@ from typing import Any
 import pytest
 
 from playground import cli
+from playground.engine.engine import Engine
 from playground.errors import PlaygroundError, ShaderError
 from playground.shader.header import parse_kernel
 from playground.shader.source import read_source
 
 from .cases import each
+from .loading import load
 from .sketch.conftest import PASS, TAIL, Folder
 from .sketch_texts import LIT_NOISE, SMALL_VIEW, passes
 
@@ -129,3 +131,10 @@ def test_a_mistake_in_a_command_is_one_line_and_status_2(
     out, error = capfd.readouterr()
     assert out == "" and error.startswith("error: ") and row["names"] in error
     assert len(error.splitlines()) == 1 and sorted(tmp_path.rglob("*")) == before
+
+
+@each("row", rows("drawn"), ids=lambda row: row["names"])
+def test_a_mistake_in_what_is_drawn_is_refused(any_engine: Engine, row: Row, tmp_path: Path) -> None:
+    (tmp_path / "one.glsl").write_text(row["kernel"], "utf-8")
+    (tmp_path / "sketch.toml").write_text(f"format = 1\nsize = 17\n{passes(a='./one')}", "utf-8")
+    assert_refused(lambda: any_engine.read(load(tmp_path), "a"), row, "one.glsl", row.get("line"))

@@ -57,3 +57,11 @@ def on_both_kinds(
 def folder(tmp_path: Path) -> Folder:
     """Give an empty folder for a sketch."""
     return Folder(tmp_path)
+
+
+@pytest.fixture
+def compute_engine(any_engine: Engine) -> Engine:
+    """Give an engine that chooses its drivers itself, where there are compute shaders."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    return any_engine

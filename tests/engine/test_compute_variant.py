@@ -98,14 +98,12 @@ def test_its_iterations_are_shown_by_the_kernel(any_engine, sums, ran):
     assert len(list(any_engine.steps(sums, "sums"))) == 5
 
 
-def test_a_changed_variant_is_stale_and_so_is_a_removed_one(any_engine, folder, sums):
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
-    any_engine.texture(sums, "sums")
+def test_a_changed_variant_is_stale_and_so_is_a_removed_one(compute_engine, folder, sums):
+    compute_engine.texture(sums, "sums")
     folder.write("sums.comp", SWEEP.replace("vec4(sum)", "vec4(sum * 2.0)"))
-    np.testing.assert_allclose(any_engine.read(folder.sketch(BODY, size="size = 16"), "sums"), truth(2.0))
+    np.testing.assert_allclose(compute_engine.read(folder.sketch(BODY, size="size = 16"), "sums"), truth(2.0))
     (folder.path / "sums.comp").unlink()
-    np.testing.assert_allclose(any_engine.read(folder.sketch(BODY, size="size = 16"), "sums"), truth())
+    np.testing.assert_allclose(compute_engine.read(folder.sketch(BODY, size="size = 16"), "sums"), truth())
 
 
 def test_a_start_that_it_knows_nothing_of_keeps_it_out(any_engine, folder, sums, ran):
@@ -185,12 +183,10 @@ def test_one_next_to_a_technique_replaces_all_of_it(ctx, folder):
         ('groups = "size.x, 1", repeat = "log2(3)"', "power of two"),
     ],
 )
-def test_a_wrong_expression_names_the_pass(any_engine, folder, sums, option, message):
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
+def test_a_wrong_expression_names_the_pass(compute_engine, folder, sums, option, message):
     folder.write("sums.comp", SWEEP.replace('groups = "1, size.y", local = "1, 1"', option))
     with pytest.raises(PlaygroundError, match=message):
-        any_engine.read(folder.sketch(BODY, size="size = 16"), "sums")
+        compute_engine.read(folder.sketch(BODY, size="size = 16"), "sums")
 
 
 FILL = """#pragma compute(groups = "size.x, size.y", local = "1, 1", buffers = "work:float:500"OPTION)
@@ -207,10 +203,8 @@ float kernel(ivec2 texel) { return 1.0 + 0.0 * again; }
 """
 
 
-def test_spare_buffer_is_cleared_unless_overwritten(any_engine, folder):
+def test_spare_buffer_is_cleared_unless_overwritten(compute_engine, folder):
     """The buffer of the run before is used again, so a variant that adds to it shows what it began with."""
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
     for option, second in (("", 1.0), (', overwrites = "work"', 2.0)):
         folder.write("fill.glsl", PLAIN_FILL)
         again = "uniform float again = 0.0; //! slider(0, 9)\n"
@@ -219,44 +213,40 @@ def test_spare_buffer_is_cleared_unless_overwritten(any_engine, folder):
         )
         folder.write("fill.comp", text)
         sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 19")
-        assert (any_engine.read(sketch, "a") == 1.0).all()
-        assert (any_engine.read(sketch.with_values({"a.again": 1.0}), "a") == second).all()
-        any_engine.runner.compute_variants.release()
+        assert (compute_engine.read(sketch, "a") == 1.0).all()
+        assert (compute_engine.read(sketch.with_values({"a.again": 1.0}), "a") == second).all()
+        compute_engine.runner.compute_variants.release()
 
 
-def test_a_spare_buffer_serves_what_needs_a_little_less(any_engine, folder):
+def test_a_spare_buffer_serves_what_needs_a_little_less(compute_engine, folder):
     """19 x 19 numbers, then 18 x 18, and the shader knows of no more; of 12 x 12 too much would be idle."""
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
     folder.write("fill.glsl", PLAIN_FILL)
     text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
     folder.write("fill.comp", text.replace("+= 1.0", "+= float(work.length())"))
-    spare = any_engine.runner.compute_variants._spare
+    spare = compute_engine.runner.compute_variants._spare
     result = []
     for side in (19, 18, 12):
         sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
-        assert (any_engine.read(sketch, "a") == side * side).all()
+        assert (compute_engine.read(sketch, "a") == side * side).all()
         result.append([item.buffer.size for item in spare])
     assert result[0] == result[1] == [19 * 19 * 4] and result[2] == [19 * 19 * 4, 12 * 12 * 4]
 
 
-def test_largest_spare_buffer_over_budget_stays_while_in_use(any_engine, folder, monkeypatch):
+def test_largest_spare_buffer_over_budget_stays_while_in_use(compute_engine, folder, monkeypatch):
     """A frame's smaller passes do not have it made again each time; once none asks for it, it goes."""
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
     folder.write("fill.glsl", PLAIN_FILL)
     again = "uniform float again = 0.0; //! slider(0, 9)\n"
     text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
     folder.write(
         "fill.comp", text.replace("void main() {", f"{again}void main() {{ if (again > 99.0) return;")
     )
-    monkeypatch.setattr(any_engine.runner.pool, "limit", 0)
-    spare = any_engine.runner.compute_variants._spare
+    monkeypatch.setattr(compute_engine.runner.pool, "limit", 0)
+    spare = compute_engine.runner.compute_variants._spare
 
     def sizes_after(*sides):
         for number, side in enumerate(sides):
             sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
-            any_engine.read(sketch.with_values({"a.again": number / 9}), "a")
+            compute_engine.read(sketch.with_values({"a.again": number / 9}), "a")
         return [item.buffer.size // 4 for item in spare]
 
     assert sizes_after(19, 12, 4) == [19 * 19, 4 * 4], "of two the larger stays, and the last run's"
@@ -291,24 +281,20 @@ void main() {
 
 
 @pytest.mark.parametrize("size", [16, 17, [5, 3]])
-def test_a_buffer_of_an_outputs_name_is_that_output(any_engine, folder, sums, size):
+def test_a_buffer_of_an_outputs_name_is_that_output(compute_engine, folder, sums, size):
     """Its rows are filled up to 8 bytes, so those of an odd terrain have a float more."""
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
     folder.write("sums.glsl", SUMS.replace("log2(size.x)", "5"))
     folder.write("sums.comp", BUFFERED_HEAD + BUFFERED)
-    result = any_engine.read(folder.sketch(BODY, size=f"size = {size}"), "sums")
+    result = compute_engine.read(folder.sketch(BODY, size=f"size = {size}"), "sums")
     nx, ny = size if isinstance(size, list) else (size, size)
     y, x = np.mgrid[0:ny, 0:nx]
     np.testing.assert_array_equal(result, np.cumsum((x * 3 + y * 5) % 8, axis=1))
 
 
-def test_a_buffer_too_small_for_its_output_has_a_sentence(any_engine, folder, sums):
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
+def test_a_buffer_too_small_for_its_output_has_a_sentence(compute_engine, folder, sums):
     folder.write("sums.comp", BUFFERED_HEAD.replace("2 * 2 *", "2 *") + BUFFERED)
     with pytest.raises(PlaygroundError, match="holds 512 bytes; the output needs 1024"):
-        any_engine.read(folder.sketch(BODY, size="size = 16"), "sums")
+        compute_engine.read(folder.sketch(BODY, size="size = 16"), "sums")
 
 
 STAGES = (
@@ -326,24 +312,20 @@ void main() {
 )
 
 
-def test_stages_say_what_each_iteration_does(any_engine, folder):
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
+def test_stages_say_what_each_iteration_does(compute_engine, folder):
     folder.write("fill.glsl", PLAIN_FILL)
     folder.write("fill.comp", STAGES)
     sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 19")
-    before = any_engine.runner.programs.compiled
+    before = compute_engine.runner.programs.compiled
     for _ in range(2):
-        assert (any_engine.read(sketch, "a") == 4 * 294).all()
-        any_engine.cache.clear()
-    made = any_engine.runner.programs.compiled - before
-    assert made == (3 if any_engine.info.software else 1), "one for each stage, where the processor draws"
+        assert (compute_engine.read(sketch, "a") == 4 * 294).all()
+        compute_engine.cache.clear()
+    made = compute_engine.runner.programs.compiled - before
+    assert made == (3 if compute_engine.info.software else 1), "one for each stage, where the processor draws"
 
 
-def test_a_stage_with_no_groups_is_left_out(any_engine, folder):
+def test_a_stage_with_no_groups_is_left_out(compute_engine, folder):
     """As for a step that only larger sizes need."""
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
     groups = "0 if iteration % 3 == 1 else size.x // 8 + 1, size.y"
     head = f'#pragma compute(stages = "0, 0, 0, 0, 0, 1", groups = "{groups}", local = "8, 1", '
     folder.write("fill.glsl", PLAIN_FILL)
@@ -362,12 +344,10 @@ def test_a_stage_with_no_groups_is_left_out(any_engine, folder):
     )
     for side, expected in ((19, 134.0), (3, 134.0)):
         sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
-        np.testing.assert_array_equal(any_engine.read(sketch, "a"), expected)
+        np.testing.assert_array_equal(compute_engine.read(sketch, "a"), expected)
 
 
-def test_a_stage_that_comes_back_reads_what_it_read_before(any_engine, folder):
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
+def test_a_stage_that_comes_back_reads_what_it_read_before(compute_engine, folder):
     constant = '#pragma kernel(output = "value:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
     folder.write("one.glsl", constant.format("1.0"))
     folder.write("hundred.glsl", constant.format("100.0"))
@@ -394,7 +374,7 @@ def test_a_stage_that_comes_back_reads_what_it_read_before(any_engine, folder):
     passes = [("one", "./one"), ("hundred", "./hundred"), ("added", "./added")]
     body = "".join(f'[[pass]]\nname = "{name}"\nuse = "{use}"\n' for name, use in passes)
     sketch = folder.sketch(body, size="size = 8")
-    np.testing.assert_array_equal(any_engine.read(sketch, "added"), 102.0)
+    np.testing.assert_array_equal(compute_engine.read(sketch, "added"), 102.0)
 
 
 def test_stages_take_the_place_of_repeat(folder):
@@ -424,11 +404,9 @@ void main() {
 
 @pytest.mark.parametrize("size", [(19, 7), (64, 64)])
 @pytest.mark.parametrize("fits", [True, False])
-def test_buffers_are_read_by_functions(any_engine, folder, size, fits, monkeypatch):
+def test_buffers_are_read_by_functions(compute_engine, folder, size, fits, monkeypatch):
     """By textures on a software renderer, where those may be so long; what a step has written is there."""
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
-    tuning = any_engine.runner.tuning
+    tuning = compute_engine.runner.tuning
     if isinstance(tuning, Software) and not fits:
         monkeypatch.setattr(tuning, "max_texels", 16)
     folder.write("fill.glsl", PLAIN_FILL)
@@ -437,33 +415,31 @@ def test_buffers_are_read_by_functions(any_engine, folder, size, fits, monkeypat
     at = np.arange(size[0] * size[1])
     expected = (0.25 + at + at // 2 * np.where(at % 2, 200, 100)).reshape(size[::-1])
     for _ in range(2):  # the second time buffers are used again
-        np.testing.assert_array_equal(any_engine.read(sketch, "a"), expected)
-        any_engine.cache.clear()
+        np.testing.assert_array_equal(compute_engine.read(sketch, "a"), expected)
+        compute_engine.cache.clear()
     if isinstance(tuning, Software):
         assert bool(tuning._textures) == fits
         tuning.release()
 
 
-def test_a_variants_own_function_of_such_a_name_is_its_own(any_engine, folder):
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
+def test_a_variants_own_function_of_such_a_name_is_its_own(compute_engine, folder):
     own = "float read_ones(int place) { return 2.0 * ones[place]; }\nvoid main"
     folder.write("fill.glsl", PLAIN_FILL)
     folder.write("fill.comp", READ.replace("void main", own))
     sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = [19, 7]")
     at = np.arange(19 * 7)
     expected = (0.25 + 2 * at + at // 2 * np.where(at % 2, 200, 100)).reshape(7, 19)
-    np.testing.assert_array_equal(any_engine.read(sketch, "a"), expected)
+    np.testing.assert_array_equal(compute_engine.read(sketch, "a"), expected)
 
 
-def test_a_variant_whose_every_step_has_no_groups_is_told(any_engine, folder):
+def test_a_variant_whose_every_step_has_no_groups_is_told(compute_engine, folder):
     """What it would give was never written."""
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
     folder.write("fill.glsl", PLAIN_FILL)
     folder.write("fill.comp", READ.replace("(size.x * size.y + 3) // 4, 1", "size.x // 64, 1", 1))
     with pytest.raises(PlaygroundError, match="pass 'a': groups of 0 leave out every step at this size"):
-        any_engine.read(folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = [19, 7]"), "a")
+        compute_engine.read(
+            folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = [19, 7]"), "a"
+        )
 
 
 ROWS = """#pragma compute(groups = "size.x,size.y", local = "1,1", aligned = "4", buffers = "sums:float:SIZE")
@@ -476,10 +452,8 @@ void main() {
 
 @pytest.mark.parametrize("size", [(19, 7), (2, 3), (64, 64)])
 @pytest.mark.parametrize("fours", [1, 2])
-def test_rows_of_a_buffer_may_be_whole_fours_or_eights(any_engine, folder, size, fours):
+def test_rows_of_a_buffer_may_be_whole_fours_or_eights(compute_engine, folder, size, fours):
     """OpenGL itself fills rows up to 8 bytes at most."""
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
     row = f"(size.x + {4 * fours - 1}) // {4 * fours} * {fours}"
     head = f'#pragma compute(groups = "{row}, size.y", local = "1, 1", aligned = "{16 * fours}", '
     body = f"""buffers = "sums:vec4:{row} * size.y")
@@ -493,7 +467,7 @@ def test_rows_of_a_buffer_may_be_whole_fours_or_eights(any_engine, folder, size,
     folder.write("fill.comp", head + body)
     sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {list(size)}")
     y, x = np.mgrid[0 : size[1], 0 : size[0]]
-    np.testing.assert_array_equal(any_engine.read(sketch, "a"), x + 100 * y)
+    np.testing.assert_array_equal(compute_engine.read(sketch, "a"), x + 100 * y)
 
 
 IN_PLACE = """#pragma compute(groups = "size.x * size.y, 1", local = "1, 1", aligned = "4", \\
@@ -554,14 +528,12 @@ def test_what_works_in_place_has_a_buffer_and_an_input(folder, old, new, message
 
 
 @pytest.mark.parametrize("size", [(19, 7), (2, 3), (64, 64)])
-def test_a_buffer_may_be_an_output(any_engine, folder, size):
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
+def test_a_buffer_may_be_an_output(compute_engine, folder, size):
     folder.write("fill.glsl", PLAIN_FILL)
     folder.write("fill.comp", ROWS.replace("SIZE", "size.x * size.y"))
     sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {list(size)}")
     y, x = np.mgrid[0 : size[1], 0 : size[0]]
-    np.testing.assert_array_equal(any_engine.read(sketch, "a"), x + 100 * y)
+    np.testing.assert_array_equal(compute_engine.read(sketch, "a"), x + 100 * y)
 
 
 def test_a_buffer_of_other_numbers_is_no_output(folder):
@@ -607,11 +579,9 @@ def left(folder, text=LEFT):
     return folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 4")
 
 
-def test_with_nothing_left_to_do_only_the_last_step_runs(any_engine, folder, ran):
+def test_with_nothing_left_to_do_only_the_last_step_runs(compute_engine, folder, ran):
     """101 steps until nothing is left; that is noticed within their root of them, and one step ends it."""
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
-    result = any_engine.read(left(folder), "a")
+    result = compute_engine.read(left(folder), "a")
     assert (result == result[0, 0]).all()
     assert 102 <= result[0, 0] <= 101 + 11 + 1
 

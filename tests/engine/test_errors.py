@@ -62,12 +62,6 @@ def test_error_after_includes_has_correct_kernel_line(engine, folder):
     assert error.diagnostics[0].line == 4
 
 
-def test_an_undefined_function(engine, folder):
-    error = mistake(engine, folder, GOOD.replace("1.0", "nowhere(2.0)"))
-    assert error.diagnostics[0].line == 3
-    assert "nowhere" in error.diagnostics[0].message
-
-
 def test_several_mistakes_are_all_reported(engine, folder):
     error = mistake(
         engine, folder, GOOD.replace("return 1.0;", "float x = one_wrong;\n    return two_wrong;")
@@ -75,69 +69,15 @@ def test_several_mistakes_are_all_reported(engine, folder):
     assert {3, 4} <= {d.line for d in error.diagnostics}
 
 
-@pytest.mark.parametrize(
-    "function",
-    [
-        "vec4 kernel(ivec2 texel) { return vec4(1.0); }",
-        "float kernel(vec2 texel) { return 1.0; }",
-        "float kernel(ivec2 texel, out float x) { x = 1.0; return 1.0; }",
-        "float kernel() { return 1.0; }",
-        "void kernel(ivec2 texel, out float a) { a = 1.0; }",
-    ],
-)
-def test_a_wrong_signature_says_the_right_one(engine, folder, function):
-    error = mistake(engine, folder, f'#pragma kernel(output = "a:r32f")\n\n{function}\n')
-    assert error.diagnostics[0].message.startswith("kernel must be float kernel(ivec2 texel)")
-    assert error.diagnostics[0].line == 3
-
-
-def test_a_wrong_signature_of_several_outputs(engine, folder):
-    head = '#pragma kernel(output = "a:r32f, b:rg8")\n'
-    error = mistake(
-        engine, folder, head + "void kernel(ivec2 texel, out vec2 b, out float a) { a = 1.0; b = vec2(1); }\n"
-    )
-    assert "void kernel(ivec2 texel, out float a, out vec2 b)" in error.diagnostics[0].message
-    error = mistake(
-        engine, folder, head + "void kernel(ivec2 texel, out float b, out vec2 a) { b = 1.0; a = vec2(1); }\n"
-    )
-    assert "in the order of the pragma" in error.diagnostics[0].message
-
-
 def test_words_that_change_nothing_are_allowed_in_a_signature(engine, folder):
     kernel = GOOD.replace("(ivec2 texel)", "( const in ivec2 texel )\n")
     assert engine.read(folder.one(kernel), "a")[0, 0] == 1.0
-
-
-def test_no_kernel_at_all(engine, folder):
-    error = mistake(
-        engine,
-        folder,
-        '// words\n#pragma kernel(output = "a:r32f")\nfloat kernl(ivec2 texel) { return 1.0; }\n',
-    )
-    assert "there is no function float kernel(ivec2 texel)" in error.diagnostics[0].message
-    assert error.diagnostics[0].line == 2
-
-
-def test_visits_without_their_function(engine, folder):
-    text = GOOD.replace('r32f"', 'r32f", repeat = "2", visits = "1, 1"')
-    assert "needs a function ivec2 visit(ivec2 cell)" in mistake(engine, folder, text).diagnostics[0].message
 
 
 def test_previous_without_a_repeat(engine, folder):
     error = mistake(engine, folder, GOOD.replace("1.0", "previous(texel) + 1.0"))
     assert "give it a repeat" in error.diagnostics[0].message
     assert (error.diagnostics[0].line, error.diagnostics[0].column) == (3, 12)
-
-
-def test_previous_by_the_wrong_name(engine, folder):
-    two = (
-        '#pragma kernel(output = "a:r32f, b:r32f", repeat = "2")\n'
-        "void kernel(ivec2 texel, out float a, out float b) {\n"
-    )
-    error = mistake(engine, folder, two + "    a = previous(texel);\n    b = 0.0;\n}\n")
-    assert "previous_a and previous_b, not previous" in error.diagnostics[0].message
-    item = GOOD.replace('r32f"', 'r32f", repeat = "2"').replace("1.0", "previous_a(texel)")
-    assert "read by previous, not previous_a" in mistake(engine, folder, item).diagnostics[0].message
 
 
 @pytest.mark.parametrize(
@@ -154,13 +94,6 @@ def test_one_bracket_too_many(engine, folder):
     first = mistake(engine, folder, GOOD + "}\n").diagnostics[0]
     assert first.file.endswith("one.glsl")
     assert first.line == 5
-
-
-@pytest.mark.parametrize("word", ["texture(a, uv)", "dFdx(1.0)", "gl_FragCoord.x", "fma(1.0, 2.0, 3.0)"])
-def test_what_one_driver_lacks_is_refused_by_both(engine, folder, word):
-    error = mistake(engine, folder, GOOD.replace("1.0", word))
-    assert "a kernel may not use" in error.diagnostics[0].message
-    assert error.diagnostics[0].line == 3
 
 
 def test_a_mistake_does_not_spoil_the_next_frame(engine, folder):

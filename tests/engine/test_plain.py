@@ -100,20 +100,16 @@ void main() {
 """
 
 
-def test_a_plain_compute_shader_writes_its_image(any_engine, folder):
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
+def test_a_plain_compute_shader_writes_its_image(compute_engine, folder):
     sketch = load(folder.write("c.comp", COMPUTE))
-    frame = any_engine.render(sketch, size=(9, 5), time=1.0)
+    frame = compute_engine.render(sketch, size=(9, 5), time=1.0)
     np.testing.assert_allclose(frame.array[2, :, 0], np.round(np.arange(9) / 8 * 255), atol=1)
     assert np.all(frame.array[..., 1] == 255)
 
 
-def test_what_it_does_not_write_is_empty(any_engine, folder):
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
+def test_what_it_does_not_write_is_empty(compute_engine, folder):
     half = COMPUTE.replace("imageSize(picture).x", "4")
-    frame = any_engine.render(load(folder.write("c.comp", half)), size=(9, 5), time=1.0)
+    frame = compute_engine.render(load(folder.write("c.comp", half)), size=(9, 5), time=1.0)
     assert not frame.array[:, 4:].any()
 
 
@@ -205,10 +201,8 @@ void main() {
 """
 
 
-def test_a_plain_compute_shader_reads_one_too(any_engine, folder, pixels):
-    if not any_engine.info.compute:
-        pytest.skip("this context has no compute shaders")
-    frame = any_engine.render(load(folder.write("c.comp", COPY_COMPUTE)), size=(8, 6))
+def test_a_plain_compute_shader_reads_one_too(compute_engine, folder, pixels):
+    frame = compute_engine.render(load(folder.write("c.comp", COPY_COMPUTE)), size=(8, 6))
     np.testing.assert_array_equal(frame.array, pixels)
 
 

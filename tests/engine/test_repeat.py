@@ -194,14 +194,6 @@ def test_a_repeat_that_reads_time_goes_on_and_starts_again(engine, folder):
     assert texels == [1, 3, 0, 4, 2]
 
 
-@pytest.mark.parametrize("repeat", ["-1", "2 ** 40", "log2(3)", "1 / 0", "nobody"])
-def test_a_wrong_count_has_a_place(engine, folder, repeat):
-    with pytest.raises(PlaygroundError) as caught:
-        engine.read(folder.one(COUNT.replace('"count"', f'"{repeat}"')), "a")
-    assert caught.value.diagnostics[0].file
-    assert caught.value.diagnostics[0].line
-
-
 AT_ONCE = """#pragma kernel(output = "a:r32f", repeat = "count", at_once = "most")
 uniform int count = 11; //! slider(0, 50)
 uniform int most = 4; //! slider(0, 50)
