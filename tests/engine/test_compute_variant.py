@@ -203,6 +203,13 @@ float kernel(ivec2 texel) { return 1.0 + 0.0 * again; }
 """
 
 
+def filled(folder, variant: str, size: str = "size = 19"):
+    """Return a sketch of PLAIN_FILL with a compute variant."""
+    folder.write("fill.glsl", PLAIN_FILL)
+    folder.write("fill.comp", variant)
+    return folder.sketch(passes(a="./fill"), size=size)
+
+
 def test_spare_buffer_is_cleared_unless_overwritten(compute_engine, folder):
     """The buffer of the run before is used again, so a variant that adds to it shows what it began with."""
     for option, second in (("", 1.0), (', overwrites = "work"', 2.0)):
@@ -253,13 +260,6 @@ def test_largest_spare_buffer_over_budget_stays_while_in_use(compute_engine, fol
     kept = spare[0].buffer
     assert sizes_after(5, 19, 6) == [19 * 19, 6 * 6] and spare[0].buffer is kept
     assert sizes_after(*[3, 5] * (_RECENT // 2 + 1)) == [3 * 3, 5 * 5]
-
-
-def test_overwrites_names_an_output_or_a_buffer(folder):
-    folder.write("fill.glsl", PLAIN_FILL)
-    folder.write("fill.comp", FILL.replace("OPTION", ', overwrites = "wrok"'))
-    with pytest.raises(PlaygroundError, match="no output or buffer 'wrok'; did you mean 'work'"):
-        folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
 
 
 BUFFERED_HEAD = (
@@ -313,9 +313,7 @@ void main() {
 
 
 def test_stages_say_what_each_iteration_does(compute_engine, folder):
-    folder.write("fill.glsl", PLAIN_FILL)
-    folder.write("fill.comp", STAGES)
-    sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 19")
+    sketch = filled(folder, STAGES, "size = 19")
     before = compute_engine.runner.programs.compiled
     for _ in range(2):
         assert (compute_engine.read(sketch, "a") == 4 * 294).all()
@@ -377,15 +375,6 @@ def test_a_stage_that_comes_back_reads_what_it_read_before(compute_engine, folde
     np.testing.assert_array_equal(compute_engine.read(sketch, "added"), 102.0)
 
 
-def test_stages_take_the_place_of_repeat(folder):
-    folder.write("fill.glsl", PLAIN_FILL)
-    wrong = (('", repeat = "4"', "leave repeat out"), (', x"', "whole numbers separated by commas"))
-    for option, message in wrong:
-        folder.write("fill.comp", STAGES.replace('1"', f"1{option}", 1))
-        with pytest.raises(PlaygroundError, match=message):
-            folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
-
-
 READ = """#pragma compute(stages = "0, 1", groups = "(size.x * size.y + 3) // 4, 1", local = "1, 1", \\
                 aligned = "4", buffers = "ones:float:size.x * size.y + 3; \\
                 pairs:vec2:size.x * size.y // 2 + 2; sums:vec4:(size.x * size.y + 3) // 4")
@@ -409,9 +398,7 @@ def test_buffers_are_read_by_functions(compute_engine, folder, size, fits, monke
     tuning = compute_engine.runner.tuning
     if isinstance(tuning, Software) and not fits:
         monkeypatch.setattr(tuning, "max_texels", 16)
-    folder.write("fill.glsl", PLAIN_FILL)
-    folder.write("fill.comp", READ)
-    sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {list(size)}")
+    sketch = filled(folder, READ, f"size = {list(size)}")
     at = np.arange(size[0] * size[1])
     expected = (0.25 + at + at // 2 * np.where(at % 2, 200, 100)).reshape(size[::-1])
     for _ in range(2):  # the second time buffers are used again
@@ -424,9 +411,7 @@ def test_buffers_are_read_by_functions(compute_engine, folder, size, fits, monke
 
 def test_a_variants_own_function_of_such_a_name_is_its_own(compute_engine, folder):
     own = "float read_ones(int place) { return 2.0 * ones[place]; }\nvoid main"
-    folder.write("fill.glsl", PLAIN_FILL)
-    folder.write("fill.comp", READ.replace("void main", own))
-    sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = [19, 7]")
+    sketch = filled(folder, READ.replace("void main", own), "size = [19, 7]")
     at = np.arange(19 * 7)
     expected = (0.25 + 2 * at + at // 2 * np.where(at % 2, 200, 100)).reshape(7, 19)
     np.testing.assert_array_equal(compute_engine.read(sketch, "a"), expected)
@@ -463,9 +448,7 @@ def test_rows_of_a_buffer_may_be_whole_fours_or_eights(compute_engine, folder, s
         sums[four.y * ({row.replace("//", "/")}) + four.x] = x + 100.0 * float(four.y);
     }}
     """
-    folder.write("fill.glsl", PLAIN_FILL)
-    folder.write("fill.comp", head + body)
-    sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {list(size)}")
+    sketch = filled(folder, head + body, f"size = {list(size)}")
     y, x = np.mgrid[0 : size[1], 0 : size[0]]
     np.testing.assert_array_equal(compute_engine.read(sketch, "a"), x + 100 * y)
 
@@ -514,38 +497,11 @@ def test_a_buffer_does_not_begin_as_an_input_of_another_size(any_engine, folder)
     assert (any_engine.read(in_place(folder, size="size = [5, 4]"), "a") == 5.0).all()
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ('in_place = "held"', 'in_place = "hold"', "in_place: no buffer 'hold'; did you mean 'held'"),
-        ("uniform sampler2D values; //! input\n", "", "no input that the buffer could begin as"),
-        ("held:float", "held:int", "a buffer of int cannot be the output more:r32f"),
-    ],
-)
-def test_what_works_in_place_has_a_buffer_and_an_input(folder, old, new, message):
-    with pytest.raises(PlaygroundError, match=message):
-        in_place(folder, plus=IN_PLACE.replace(old, new))
-
-
 @pytest.mark.parametrize("size", [(19, 7), (2, 3), (64, 64)])
 def test_a_buffer_may_be_an_output(compute_engine, folder, size):
-    folder.write("fill.glsl", PLAIN_FILL)
-    folder.write("fill.comp", ROWS.replace("SIZE", "size.x * size.y"))
-    sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {list(size)}")
+    sketch = filled(folder, ROWS.replace("SIZE", "size.x * size.y"), f"size = {list(size)}")
     y, x = np.mgrid[0 : size[1], 0 : size[0]]
     np.testing.assert_array_equal(compute_engine.read(sketch, "a"), x + 100 * y)
-
-
-def test_a_buffer_of_other_numbers_is_no_output(folder):
-    folder.write("fill.glsl", PLAIN_FILL)
-    for kind in ("int", "vec2"):
-        folder.write("fill.comp", ROWS.replace("sums:float:SIZE", f"sums:{kind}:9"))
-        with pytest.raises(PlaygroundError, match=f"a buffer of {kind} cannot be the output sums:r32f"):
-            folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
-    folder.write("fill.glsl", PLAIN_FILL.replace("r32f", "r16f"))
-    folder.write("fill.comp", ROWS.replace("SIZE", "size.x * size.y"))
-    with pytest.raises(PlaygroundError, match="cannot be the output sums:r16f"):
-        folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
 
 
 def test_technique_variant_accepts_sizes_of_its_technique(any_engine, folder):
@@ -587,12 +543,25 @@ def test_with_nothing_left_to_do_only_the_last_step_runs(compute_engine, folder,
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("variant", "old", "new", "message"),
     [
-        ('active = "left"', 'active = "lift"', "active: no buffer 'lift'; did you mean 'left'"),
-        ('repeat = "1000000", ', "", "active says when a repeat may end; give the compute variant a repeat"),
+        (FILL, "OPTION", ', overwrites = "wrok"', "no output or buffer 'wrok'; did you mean 'work'"),
+        (STAGES, '2, 1"', '2, 1", repeat = "4"', "leave repeat out"),
+        (STAGES, '2, 1"', '2, 1, x"', "whole numbers separated by commas"),
+        (IN_PLACE, 'in_place = "held"', 'in_place = "hold"', "no buffer 'hold'; did you mean 'held'"),
+        (IN_PLACE, "uniform sampler2D values; //! input\n", "", "no input that the buffer could begin as"),
+        (IN_PLACE, "held:float", "held:int", "a buffer of int cannot be the output more:r32f"),
+        (ROWS, "float:SIZE", "int:9", "a buffer of int cannot be the output sums:r32f"),
+        (ROWS, "float:SIZE", "vec2:9", "a buffer of vec2 cannot be the output sums:r32f"),
+        (ROWS.replace("sums", "thin"), "SIZE", "size.x * size.y", "cannot be the output thin:r16f"),
+        (LEFT, 'active = "left"', 'active = "lift"', "active: no buffer 'lift'; did you mean 'left'"),
+        (LEFT, 'repeat = "1000000", ', "", "active says when a repeat may end"),
     ],
 )
-def test_what_ends_early_has_a_buffer_and_a_repeat(folder, old, new, message):
+def test_a_wrong_header_of_a_variant_is_refused(folder, variant, old, new, message):
+    outputs = {FILL: "sums", STAGES: "sums", ROWS: "sums", LEFT: "plus"}
+    kernel = PLUS if variant is IN_PLACE else PLAIN_FILL.replace("sums", outputs.get(variant, "thin"))
+    folder.write("fill.glsl", kernel.replace("thin:r32f", "thin:r16f"))
+    folder.write("fill.comp", variant.replace(old, new))
     with pytest.raises(PlaygroundError, match=message):
-        left(folder, LEFT.replace(old, new))
+        folder.sketch(passes(a="./fill"))
