@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import shlex
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -18,18 +16,11 @@ from playground.shader.source import read_source
 
 from .cases import each
 from .loading import load
+from .refusals import Row, rows
 from .sketch.conftest import PASS, TAIL, Folder
 from .sketch_texts import LIT_NOISE, SMALL_VIEW, passes
 
 KERNEL = '#pragma kernel(output = "height:r32f")\n'
-Row = dict[str, Any]
-
-
-def rows(name: str) -> list[Row]:
-    """Return the rows of a file of ``tests/refusals``."""
-    path = Path(__file__).parent / "refusals" / f"{name}.toml"
-    result: list[Row] = tomllib.loads(path.read_text("utf-8"))["rows"]
-    return result
 
 
 def assert_refused(act: Callable[[], object], row: Row, file: str, line: int | None) -> PlaygroundError:

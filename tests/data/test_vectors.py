@@ -19,6 +19,9 @@ from playground.extras import install_command
 from playground.paths import GLSL
 from playground.sketch.techniques import read_technique
 
+from ..cases import each
+from ..refusals import rows
+
 RNG = np.random.default_rng(6)
 FINE = 16  # texels of the truth in one, along each side
 
@@ -188,43 +191,16 @@ def test_every_kind_of_geometry_is_read_with_and_without_heights(tmp_path):
     assert result.crs == "EPSG:4326"
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("{", "is not GeoJSON: "),
-        ("[1, 2]", 'expected an object that has a "type"'),
-        ('{"type": "Topology"}', "is not GeoJSON: it holds a 'Topology'; expected Point"),
-        ('{"type": "Point", "coordinates": ["a", "b"]}', "Point whose coordinates are no numbers"),
-        ('{"type": "LineString", "coordinates": [[1], [2]]}', "coordinates are no numbers"),
-        ('{"type": "Polygon", "coordinates": null}', "coordinates are no numbers"),
-        ('{"type": "Point", "coordinates": [NaN, 1]}', "coordinates are no numbers"),
-        ('{"type": "FeatureCollection", "features": []}', "holds no point, line or polygon"),
-        (
-            '{"type": "Point", "coordinates": [1, 2], "crs": {"properties": {"name": "local"}}}',
-            "names an unknown reference system, 'local'",
-        ),
-        (
-            '{"type": "Point", "coordinates": [1, 2], "crs": {"properties": null}}',
-            "names an unknown reference system, ''",
-        ),
-        (
-            '{"type": "FeatureCollection", "features": 5}',
-            'is not GeoJSON: expected "features" to be a list; found 5',
-        ),
-        (
-            '{"type": "GeometryCollection", "geometries": "ab"}',
-            "is not GeoJSON: expected \"geometries\" to be a list; found 'ab'",
-        ),
-        (
-            '{"type": "Feature", "geometry": {"type": [], "coordinates": [1, 2]}}',
-            r"is not GeoJSON: it holds a \[\]; expected Point",
-        ),
-        ('{"type": "Point", "coordinates": [1' + "0" * 400 + ", 1]}", "coordinates are no numbers"),
-    ],
-)
-def test_what_is_wrong_with_a_file_is_a_sentence(tmp_path, text, words):
-    (tmp_path / "a.json").write_text(text)
-    with pytest.raises(DataError, match=words):
+HUGE = {
+    "text": f'{{"type": "Point", "coordinates": [1{"0" * 400}, 1]}}',
+    "names": "coordinates are no numbers",
+}
+
+
+@each("row", [*rows("geojson"), HUGE])
+def test_what_is_wrong_with_a_file_is_a_sentence(tmp_path, row):
+    (tmp_path / "a.json").write_text(row["text"])
+    with pytest.raises(DataError, match=re.escape(row["names"])):
         read_vectors(tmp_path / "a.json")
 
 

@@ -20,6 +20,7 @@ from playground.shader.expressions import (
 )
 
 from ..cases import each
+from ..refusals import rows
 
 NAMES = {"size.x": 513, "size.y": 257, "octaves": 5, "half": 0.5, "sea": True}
 
@@ -114,80 +115,11 @@ def test_log2_is_exact_up_to_the_largest_power(n):
             evaluate("log2(x)", {"x": 2**n - 1})
 
 
-@each(
-    "text",
-    [
-        "",
-        " ",
-        "().__class__",
-        "().__class__.__bases__[0].__subclasses__()",
-        "__import__('os').system('true')",
-        "size.__class__.__mro__",
-        "(lambda: 1)()",
-        "[x for x in (1, 2)]",
-        "9**9**9",
-        "9**9**9**9",
-        "2**63",
-        "((((1/3)**62)**62)**62)**62",
-        "(2.0**31)**62",
-        "0**-1",
-        "0.0**-1",
-        "1e999",
-        "1e308*10",
-        "1/0",
-        "1//0",
-        "1%0",
-        "1.5 // 0.0",
-        "9" * 400,
-        "9" * 5000,
-        "(" * 240 + "1" + ")" * 240,
-        "-" * 499 + "1",
-        "1" + "+1" * 249,
-        "1" + "+1" * 300,
-        "x" * 501,
-        "1j",
-        "'a' * 9",
-        "True",
-        "None",
-        "...",
-        "1 < 2 < 3",
-        "1 and 2",
-        "not 1",
-        "~1",
-        "1 << 9",
-        "a := 1",
-        "log2()",
-        "log2(1, 2)",
-        "log2(3)",
-        "log2(0)",
-        "log2(-4)",
-        "bits(-1)",
-        "bits(1 / 2)",
-        "min()",
-        "min(1)",
-        "max(*(1, 2))",
-        "abs(1, 2)",
-        "floor(x=1)",
-        "print(1)",
-        "size.x()",
-        "1,2",
-        "1;2",
-        "1\n2",
-        "\0",
-        "５ + unknown",
-        "größe",
-        "\ud800",
-        "f'{1}'",
-        "yield 1",
-        "await x",
-        "1 if 2else 3 else",
-        "0x",
-        "size",
-        "size.z",
-        "half",
-        "7 / 2",
-    ],
-)
+MONSTERS = ["9" * 400, "9" * 5000, "(" * 240 + "1" + ")" * 240, "-" * 499 + "1", "1" + "+1" * 249]
+MONSTERS += ["1" + "+1" * 300, "x" * 501, "\ud800"]
+
+
+@each("text", [*rows("expression"), *MONSTERS])
 def test_what_is_no_expression_is_one_sentence_and_quick(text):
     start = time.process_time()
     with pytest.raises(ExpressionError):
@@ -200,14 +132,13 @@ def test_what_is_no_expression_is_one_sentence_and_quick(text):
 def test_rubbish_raises_nothing_else(seed):
     rng = random.Random(seed)
     pieces = [
-        *"0123456789.+-*/%()<>=,'\"[]{}~ \\\t\n#:@",
+        *"0123456789.+-*/%()<>=,'\"[]{}~ \\\t\n#:@é",
         "**",
         "//",
         "size.x",
         "log2(",
         " if ",
         " else ",
-        "é",
         "1e9",
     ]
     for _ in range(375):

@@ -499,29 +499,7 @@ preset = "p"
 """
     path = folder.write("s.toml", valid)
     load(path)
-    words = [
-        "[",
-        "]",
-        "[[",
-        "{",
-        "}",
-        "=",
-        '"',
-        "'",
-        '"""',
-        "\n",
-        ".",
-        ",",
-        "1",
-        "-",
-        "nan",
-        "true",
-        "./",
-        "\\",
-        "height",
-        "é",
-        "#",
-    ]
+    words = [*"[]{}='.,1-#é\\\n", "[[", '"', '"' * 3, "nan", "true", "./", "height"]
     loaded = 0
     for _ in range(625):
         text = valid
