@@ -18,6 +18,8 @@ import playground
 from playground.data.elevation import read_elevation
 from playground.data.place import metres_in
 
+from ..elevations import geotiff
+
 FOOT, SURVEY_FOOT = 0.3048, 1200 / 3937
 NUMBERS = np.add.outer(np.arange(9.0), np.arange(9.0)).astype(np.float32) * 100  # 0 .. 1600
 PLACE = Affine(30.0, 0.0, 500_000.0, 0.0, -30.0, 5_000_000.0)
@@ -38,19 +40,10 @@ def raster(path, crs="EPSG:32633", unit="", driver="GTiff", values=NUMBERS, scal
 
 
 def keyed(path, keys, metadata="", aux=""):
-    directory = [1, 1, 0, len(keys), *(n for key, value in keys.items() for n in (key, 0, 1, value))]
-    tags = [
-        (33550, "d", 3, (30.0, 30.0, 0.0), True),
-        (33922, "d", 6, (0, 0, 0, 1e6, 6e5, 0), True),
-        (34735, "H", len(directory), directory, True),
-    ]
-    if metadata:
-        tags.append((42112, "s", 0, f"<GDALMetadata>{metadata}</GDALMetadata>", True))
     if aux:
         band = f'<PAMRasterBand band="1">{aux}</PAMRasterBand>'
         Path(f"{path}.aux.xml").write_text(f"<PAMDataset>{band}</PAMDataset>")
-    tifffile.imwrite(path, NUMBERS, extratags=tags, metadata=None, photometric="minisblack")
-    return path
+    return geotiff(path, NUMBERS, keys, (30.0, 30.0), (0, 0, 0, 1e6, 6e5, 0), metadata=metadata)
 
 
 def assert_metres(path, factor, numbers=NUMBERS):

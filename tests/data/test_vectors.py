@@ -8,7 +8,6 @@ import re
 
 import numpy as np
 import pytest
-import tifffile
 
 from playground.allowed_files import VECTORS
 from playground.data import vectors
@@ -20,6 +19,7 @@ from playground.paths import GLSL
 from playground.sketch.techniques import read_technique
 
 from ..cases import each
+from ..elevations import geotiff
 from ..refusals import rows
 
 RNG = np.random.default_rng(6)
@@ -304,14 +304,8 @@ KIND = source_kind("vector_file")
 
 
 def terrain(path, epsg, west, north, step, size=(61, 41), model=1):
-    keys = [1, 1, 1, 3, 1024, 0, 1, model, 1025, 0, 1, 2, 3072 if model == 1 else 2048, 0, 1, epsg]
-    tags = [
-        (33550, "d", 3, (*step, 0.0), True),
-        (33922, "d", 6, (0.0, 0.0, 0.0, west, north, 0.0), True),
-        (34735, "H", len(keys), tuple(keys), True),
-    ]
-    tifffile.imwrite(path, np.zeros(size[::-1], np.float32), extratags=tags, metadata=None)
-    return path
+    keys = {1024: model, 1025: 2, 3072 if model == 1 else 2048: epsg}
+    return geotiff(path, np.zeros(size[::-1], np.float32), keys, step, (0.0, 0.0, 0.0, west, north, 0.0))
 
 
 @pytest.fixture

@@ -31,6 +31,11 @@ class Folder:
             os.utime(path, ns=(before + 1, before + 1))
         return path
 
+    def kernels(self, **texts: str) -> None:
+        """Write kernels by their names."""
+        for name, text in texts.items():
+            self.write(f"{name}.glsl", text)
+
     def sketch(self, body: str, *, size: str = "size = 17") -> Sketch:
         """Load a sketch; ``body`` follows format and size. Its view is a map of its last pass."""
         return load(self.write("sketch.toml", f"format = 1\n{size}\n{body}"))

@@ -157,8 +157,7 @@ void main() {
 def test_one_next_to_a_technique_replaces_all_of_it(ctx, folder):
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
-    for name, text in {"values": VALUES, "doubled": DOUBLED, "add": ADD}.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(values=VALUES, doubled=DOUBLED, add=ADD)
     folder.write("triple.toml", GRAPH)
     folder.write("triple.comp", TRIPLE_HEAD + TRIPLE)
     body = '[[pass]]\nname = "values"\nuse = "./values"\n[[pass]]\nname = "t"\nuse = "./triple"\n'

@@ -59,8 +59,7 @@ def looped(folder, use: str, output: str, fed: str):
 
 @pytest.fixture
 def sketch(folder):
-    for name, text in {"state": STATE, "other": OTHER, "show": SHOW}.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(state=STATE, other=OTHER, show=SHOW)
     folder.write("inner.toml", INNER)
     return looped(folder, "inner", "state", "own")
 
@@ -272,8 +271,7 @@ vec4 kernel(ivec2 texel) {
 @pytest.fixture
 def film_sketch(folder, tmp_path):
     own_film(tmp_path / "v.mp4", count=30, fps=20)
-    for name, text in {"red": RED, "second": SECOND, "sum": SUM, "shown": SHOWN}.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(red=RED, second=SECOND, sum=SUM, shown=SHOWN)
     return load(folder.write("sketch.toml", FILM_SKETCH))
 
 

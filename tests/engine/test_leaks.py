@@ -94,8 +94,7 @@ def run_alone(script: str, *arguments: str) -> str:
 @pytest.fixture
 def sketch(folder, tmp_path):
     write_png(tmp_path / "p.png", np.full((4, 4, 4), 255, np.uint8))
-    for name, text in {"terrain": TERRAIN, "draw": DRAW, "add": ADD}.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(terrain=TERRAIN, draw=DRAW, add=ADD)
     folder.write("loop.toml", LOOP)
     return folder.sketch(BODY, size="size = 64")
 

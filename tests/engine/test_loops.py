@@ -72,8 +72,7 @@ SKETCH = "\n" + passes(
 
 @pytest.fixture
 def rain(folder):
-    for name, text in {"start": START, "rough": ROUGH, "flow": FLOW, "move": MOVE}.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(start=START, rough=ROUGH, flow=FLOW, move=MOVE)
     folder.write("rain.toml", RAIN)
 
     def sketch(repeat: str = "4", more: str = ""):
@@ -267,8 +266,7 @@ slow = "round:slow"
 
 
 def test_nested_loops(engine, folder):
-    for name, text in {"inner": INNER, "slow": SLOW, "still": STILL}.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(inner=INNER, slow=SLOW, still=STILL)
     folder.write("inner_loop.toml", INNER_TOML)
     folder.write("outer.toml", OUTER_TOML)
     sketch = folder.sketch(passes(o=("./outer", 'repeat="floor(time)"', 'feedback={ fed = "v" }')))
@@ -294,8 +292,7 @@ def test_nested_loops(engine, folder):
 
 
 def test_a_loop_that_no_loop_around_it_changes_runs_once(engine, folder):
-    for name, text in {"inner": INNER, "slow": SLOW, "still": STILL}.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(inner=INNER, slow=SLOW, still=STILL)
     folder.write("inner_loop.toml", INNER_TOML)
     folder.write(
         "sum.glsl",
@@ -529,8 +526,7 @@ REPLAYED = {"one kernel", "two outputs, one kernel", "several kernels", "frames"
 @pytest.fixture
 def written(folder):
     texts = {"start": LEVEL, "add": ADD, "count": COUNT, "blur": BLUR, "repeated": REPEATED}
-    for name, text in texts.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(**texts)
     folder.write("two.toml", TWO)
     folder.write("inner.toml", PAIRED)
     twice = passes(a="./add", b=("./add", 'inputs = { before = "a:w" }', "set = { gain = 0.25 }"))
@@ -664,8 +660,7 @@ def by_hand(sides: list[int], use: str = "./grow") -> str:
 
 @pytest.fixture
 def levels(folder):
-    for name, text in {"grow": GROW, "smooth": SMOOTH, "still": EASTING, "start": SLANT}.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(grow=GROW, smooth=SMOOTH, still=EASTING, start=SLANT)
     folder.write(
         "one.toml",
         '[[pass]]\nname = "grow"\nuse = "./grow"\n'

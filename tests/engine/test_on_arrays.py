@@ -59,8 +59,7 @@ OPTIONS = {"spacing": (320.0 / 16, 240.0 / 12), "relief": 40.0, "base_elevation"
 
 @pytest.fixture
 def sketch(folder):
-    for name, text in {"hills": HILLS, "rain": RAIN, "slump": SLUMP}.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(hills=HILLS, rain=RAIN, slump=SLUMP)
     folder.write("slumps.toml", SLUMPS)
     return folder.sketch(SKETCH, size="size = [17, 13]")
 

@@ -51,14 +51,7 @@ EVERYTHING = ("height", "slope", "span", "clock", "light")
 
 @pytest.fixture
 def four(folder):
-    for name, text in {
-        "terrain": TERRAIN,
-        "light": LIGHT,
-        "slope": SLOPE,
-        "span": SPAN,
-        "clock": CLOCK,
-    }.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(terrain=TERRAIN, light=LIGHT, slope=SLOPE, span=SPAN, clock=CLOCK)
     return folder.sketch(FOUR)
 
 
@@ -398,8 +391,7 @@ WIDE += '[parameters]\nvalue = "a.value"\nwide = "a.wide"\n'
 @pytest.fixture
 def many(folder):
     """Give a sketch of passes of every kind that keys tell apart."""
-    for name, text in KERNELS.items():
-        folder.write(f"{name}.glsl", text)
+    folder.kernels(**KERNELS)
     folder.write("plain.frag", PLAIN)
     folder.write("pair.toml", PAIR)
     folder.write("wide.toml", WIDE)
