@@ -139,24 +139,6 @@ def test_a_frame_is_an_array():
     np.testing.assert_array_equal(np.asarray(frame), frame.array)
 
 
-@pytest.mark.parametrize("ending", ["png", "jpg", "webp", "tif"])
-def test_a_frame_is_written_as_its_name_says(tmp_path, ending):
-    import PIL.Image
-
-    kinds = {"png": "PNG", "jpg": "JPEG", "webp": "WEBP", "tif": "TIFF"}
-    frame = playground.Frame(np.full((2, 3, 4), 255, np.uint8))
-    with PIL.Image.open(frame.save(tmp_path / f"a.{ending}")) as picture:
-        assert (picture.format, picture.size) == (kinds[ending], (3, 2))
-
-
-@pytest.mark.parametrize("name", ["a.exr", "a.bmp", "a"])
-def test_another_name_is_refused_with_the_list(tmp_path, name):
-    frame = playground.Frame(np.full((2, 3, 4), 255, np.uint8))
-    with pytest.raises(playground.DataError, match=r"\.png, \.jpg, \.jpeg, \.webp, \.tif or \.tiff"):
-        frame.save(tmp_path / name)
-    assert not [*tmp_path.iterdir()]
-
-
 # ── threads ──────────────────────────────────────────────────────────────────
 
 

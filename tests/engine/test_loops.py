@@ -205,9 +205,7 @@ def test_pass_reading_iteration_runs_each_time_without_feedback(engine, folder):
         "add_up.toml",
         (passes(now="./turn", add="./add") + '[inputs]\nsum_before = "add.sum_before"\n'),
     )
-    sketch = folder.sketch(
-        '[[pass]]\nname = "a"\nuse = "./add_up"\nrepeat = 5\nfeedback = { sum_before = "sum" }\n'
-    )
+    sketch = folder.sketch(passes(a=("./add_up", "repeat = 5", 'feedback = { sum_before = "sum" }')))
     assert engine.read(sketch, "a")[2, 2] == 0 + 1 + 4 + 9 + 16
     assert engine.runs["a.now"] == 5
 
@@ -729,9 +727,7 @@ def test_the_innermost_loop_gives_the_names(engine, levels):
         'size = "2 ** (iteration + 1) + iterations"\nfeedback = { ground_before = "ground" }\n'
         '[inputs]\nground_before = "in.ground_before"\n',
     )
-    sketch = levels.sketch(
-        '[[pass]]\nname = "a"\nuse = "./inner"\nrepeat = 3\nfeedback = { ground_before = "ground" }\n'
-    )
+    sketch = levels.sketch(passes(a=("./inner", "repeat = 3", 'feedback = { ground_before = "ground" }')))
     sides = [2**j + n for n in (1, 2, 3) for j in range(1, n + 1)]
     hand = by_hand(sides).replace('inputs = { ground_before = "start" }\n', "")
     result = engine.read(sketch, "a")

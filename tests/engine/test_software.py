@@ -36,16 +36,10 @@ void kernel(ivec2 texel, out vec4 texels, out vec4 sum) {
     sum = over(second, place.yx) + texelFetch(third, place, 0) + textureLod(third, vec2(texel) / 17.0, 0.0);
 }
 """
-PASSES = """
-[[pass]]
-name = "rough"
-use = "./rough"
-size = [23, 11]
-[[pass]]
-name = "a"
-use = "./reads"
-inputs = { first = "rough", second = "rough", third = "rough" }
-"""
+PASSES = "\n" + passes(
+    rough=("./rough", "size = [23, 11]"),
+    a=("./reads", 'inputs = { first = "rough", second = "rough", third = "rough" }'),
+)
 
 
 def sketch_of(folder: Folder, form: str = "rgba32f"):
@@ -104,9 +98,7 @@ def test_the_iteration_before_is_read_so_too(any_engine: Engine, folder: Folder,
     monkeypatch.setattr(ContextInfo, "software", True)
     folder.write("rough.glsl", ROUGH.replace("FORMAT", "rgba32f"))
     folder.write("blur.glsl", BLUR)
-    sketch = folder.sketch(
-        PASSES.partition('[[pass]]\nname = "a"')[0] + '[[pass]]\nname = "a"\nuse = "./blur"\n'
-    )
+    sketch = folder.sketch(PASSES.partition('[[pass]]\nname = "a"')[0] + passes(a="./blur"))
     with Engine(any_engine.ctx) as engine:
         rough = engine.read(sketch, "rough")
         result, second = engine.read(sketch, "a"), engine.read(sketch, "a:two")
@@ -128,9 +120,9 @@ def test_no_texel_is_missed_where_there_are_many(any_engine: Engine, folder: Fol
     monkeypatch.setattr(ContextInfo, "software", True)
     folder.write("rough.glsl", ROUGH.replace("FORMAT", "rgba32f"))
     folder.write("reads.glsl", ASKS)
-    passes = PASSES.replace("[23, 11]", "[8193, 2]").partition("inputs")[0]
+    body = PASSES.replace("[23, 11]", "[8193, 2]").partition("inputs")[0]
     with Engine(any_engine.ctx) as engine:
-        sketch = folder.sketch(f"{passes}size = [{own}]\n")
+        sketch = folder.sketch(f"{body}size = [{own}]\n")
         rough, result = engine.read(sketch, "rough"), engine.read(sketch, "a")
     np.testing.assert_array_equal(result[..., :2], rough[:, : result.shape[1], :2])
 
@@ -148,8 +140,8 @@ def test_texture_sizes_match_whether_known_or_queried(any_engine: Engine, folder
     folder.write("reads.glsl", ASKS)
     with Engine(any_engine.ctx) as engine:
         for width, height in ((9, 4), (6, 2), (9, 4)):
-            passes = PASSES.replace("[23, 11]", f"[{width}, {height}]").partition("inputs")[0]
-            result = engine.read(folder.sketch(f"{passes}size = [9, 4]\n"), "a")
+            body = PASSES.replace("[23, 11]", f"[{width}, {height}]").partition("inputs")[0]
+            result = engine.read(folder.sketch(f"{body}size = [9, 4]\n"), "a")
             np.testing.assert_array_equal(result[0, 0, 2:], [width, height])
 
 

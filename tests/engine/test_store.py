@@ -37,6 +37,8 @@ from playground.engine.software import MIPMAPS
 from playground.engine.textures import levels_of, read_raw
 from playground.errors import ParameterError
 
+from ..sketch_texts import passes
+
 ROOT = Path(__file__).resolve().parents[2]
 ALWAYS = float("-inf")  # a floor that every pass's cost is above
 FORMATS = [f"{c}{d}" for c in ("r", "rg", "rgba") for d in ("8", "16", "16f", "32f")]
@@ -96,25 +98,23 @@ height = "add.before"
 [outputs]
 height = "add:height"
 """
-BODY = """extent = 1000.0
-relief = 100.0
-[[pass]]
-name = "terrain"
-use = "./terrain"
-[[pass]]
-name = "worn"
-use = "./loop"
-repeat = 3
-feedback = { height = "height" }
-inputs = { height = "terrain:height" }
-[[pass]]
-name = "light"
-use = "./light"
-inputs = { height = "worn:height" }
-[view]
+BODY = (
+    "extent = 1000.0\nrelief = 100.0\n"
+    + passes(
+        terrain="./terrain",
+        worn=(
+            "./loop",
+            "repeat = 3",
+            'feedback = { height = "height" }',
+            'inputs = { height = "terrain:height" }',
+        ),
+        light=("./light", 'inputs = { height = "worn:height" }'),
+    )
+    + """[view]
 use = "./draw"
 inputs = { height = "worn:height", light = "light" }
 """
+)
 TERRAIN_PASSES = ("terrain", "worn.add", "light")
 
 
@@ -195,17 +195,17 @@ def text_of_bits(form: str) -> str:
 
 def sketch_of_every_format(folder, declared, read):
     """Write a sketch with a pass of bits of each format, and one that reads all of them."""
-    passes, reads = "", ""
+    body, reads = "", ""
     for form in FORMATS:
         folder.write(f"{form}.glsl", text_of_bits(form))
-        passes += f'[[pass]]\nname = "{form}"\nuse = "./{form}"\n'
+        body += f'[[pass]]\nname = "{form}"\nuse = "./{form}"\n'
         reads += f"    sum += abs({read.format(form)}.r);\n"
     inputs = "".join(f"uniform sampler2D {form}; //! {declared}\n" for form in FORMATS)
     text = f'#pragma kernel(output = "v:r32f")\n{inputs}float kernel(ivec2 texel) {{\n    float sum = 0.0;\n'
     folder.write("all.glsl", f"{text}{reads}    return 1.0 / sum;\n}}\n")
     wires = ", ".join(f'{form} = "{form}"' for form in FORMATS)
-    passes += f'[[pass]]\nname = "all"\nuse = "./all"\nsize = [64, 36]\ninputs = {{ {wires} }}\n'
-    return folder.sketch(passes, size="size = [67, 41]")
+    body += f'[[pass]]\nname = "all"\nuse = "./all"\nsize = [64, 36]\ninputs = {{ {wires} }}\n'
+    return folder.sketch(body, size="size = [67, 41]")
 
 
 def test_reopened_textures_of_every_format_have_the_same_bits(shelf, folder):
@@ -481,7 +481,7 @@ def cached_of(shelf: Shelf, sketch, **options) -> set[str]:
 
 
 def test_time_and_camera_passes_and_their_readers_are_not_cached(any_shelf, folder):
-    passes = ""
+    text = ""
     for name, reads, body in (
         ("still", "", "0.5"),
         ("moves", "still", "time"),
@@ -490,9 +490,9 @@ def test_time_and_camera_passes_and_their_readers_are_not_cached(any_shelf, fold
     ):
         folder.write(f"{name}.glsl", TIMES.replace("REPEAT", "").replace("BODY", body))
         wired = f'inputs = {{ before = "{reads}" }}\n' if reads else ""
-        passes += f'[[pass]]\nname = "{name}"\nuse = "./{name}"\n{wired}'
+        text += f'[[pass]]\nname = "{name}"\nuse = "./{name}"\n{wired}'
     folder.write("grows.glsl", TIMES.replace("REPEAT", ', repeat = "2 + floor(time)"').replace("BODY", "0.1"))
-    passes += '[[pass]]\nname = "grows"\nuse = "./grows"\ninputs = { before = "still" }\n'
+    text += '[[pass]]\nname = "grows"\nuse = "./grows"\ninputs = { before = "still" }\n'
     folder.write(
         "both.glsl",
         '#pragma kernel(output = "v:r32f")\nuniform sampler2D a; //! input\nuniform sampler2D b; //! input\n'
@@ -500,8 +500,8 @@ def test_time_and_camera_passes_and_their_readers_are_not_cached(any_shelf, fold
         "float kernel(ivec2 texel) { return texelFetch(a, texel, 0).r + texelFetch(b, texel, 0).r"
         " + texelFetch(c, texel, 0).r; }\n",
     )
-    passes += '[[pass]]\nname = "both"\nuse = "./both"\ninputs = { a = "after", b = "sees", c = "grows" }\n'
-    assert cached_of(any_shelf, folder.sketch(passes)) == {"still"}
+    text += '[[pass]]\nname = "both"\nuse = "./both"\ninputs = { a = "after", b = "sees", c = "grows" }\n'
+    assert cached_of(any_shelf, folder.sketch(text)) == {"still"}
 
 
 def test_what_has_a_texel_for_each_pixel_is_not_cached(any_shelf, folder):
@@ -546,8 +546,8 @@ def test_draw_continued_by_another_keeps_samples_and_is_uncached(any_shelf, fold
     draw += "vec4 fragment() { return vec4(0.5); }\n"
     folder.write("first.glsl", draw.replace("INITIAL", ""))
     folder.write("over.glsl", draw.replace("INITIAL", "uniform sampler2D initial; //! input\n"))
-    passes = '[[pass]]\nname = "first"\nuse = "./first"\n[[pass]]\nname = "over"\nuse = "./over"\n'
-    sketch = folder.sketch(passes + 'inputs = { initial = "first" }\n')
+    body = '[[pass]]\nname = "first"\nuse = "./first"\n[[pass]]\nname = "over"\nuse = "./over"\n'
+    sketch = folder.sketch(body + 'inputs = { initial = "first" }\n')
     assert cached_of(any_shelf, sketch) == set()
     alone = folder.sketch('[[pass]]\nname = "first"\nuse = "./first"\n')
     assert cached_of(any_shelf, alone) == {"first"}
