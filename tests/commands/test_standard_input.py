@@ -18,10 +18,10 @@ SHADER = "// Half red\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(0.5, 0.0
 class Input(io.TextIOWrapper):
     def __init__(self, data: bytes, *, terminal: bool = False) -> None:
         super().__init__(io.BytesIO(data), "utf-8")
-        self._terminal = terminal
+        self.terminal = terminal
 
     def isatty(self) -> bool:
-        return self._terminal
+        return self.terminal
 
 
 @pytest.fixture(autouse=True)

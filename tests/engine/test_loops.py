@@ -671,43 +671,43 @@ def levels(folder):
     return folder
 
 
-def test_each_level_has_its_size_and_reads_coarser_texture(engine, levels):
-    result = engine.read(levels.sketch(LOOP, size="size = 33"), "a")
-    hand = engine.read(levels.sketch(by_hand([5, 9, 17, 33]), size="size = 33"), "level3")
+def test_each_level_has_its_size_and_reads_coarser_texture(any_engine, levels):
+    result = any_engine.read(levels.sketch(LOOP, size="size = 33"), "a")
+    hand = any_engine.read(levels.sketch(by_hand([5, 9, 17, 33]), size="size = 33"), "level3")
     assert result.shape == (33, 33)
     np.testing.assert_array_equal(result, hand)
 
 
-def test_sizes_may_differ_along_the_axes(engine, levels):
+def test_sizes_may_differ_along_the_axes(any_engine, levels):
     both = '["2 + 3 * iteration", "(size.y - 1) // 2 ** (iterations - 1 - iteration) + 1"]'
-    result = engine.read(levels.sketch(LOOP.replace(COARSE, both)), "a")
+    result = any_engine.read(levels.sketch(LOOP.replace(COARSE, both)), "a")
     hand = by_hand([0, 1, 2, 3])
     for number, size in enumerate(([2, 3], [5, 5], [8, 9], [11, 17])):
         hand = hand.replace(f"size = {number}\n", f"size = {size}\n")
-    np.testing.assert_array_equal(result, engine.read(levels.sketch(hand), "level3"))
+    np.testing.assert_array_equal(result, any_engine.read(levels.sketch(hand), "level3"))
 
 
 @pytest.mark.parametrize("steps", [1, 2, 3])
-def test_stopped_early_it_leaves_the_smaller_texture(engine, levels, steps):
+def test_stopped_early_it_leaves_the_smaller_texture(any_engine, levels, steps):
     sides = [5, 9, 17, 33][:steps]
     sketch = levels.sketch(LOOP, size="size = 33")
-    result = engine.read(sketch, "a", steps={"a": steps})
-    hand = engine.read(levels.sketch(by_hand(sides), size="size = 33"), f"level{steps - 1}")
+    result = any_engine.read(sketch, "a", steps={"a": steps})
+    hand = any_engine.read(levels.sketch(by_hand(sides), size="size = 33"), f"level{steps - 1}")
     np.testing.assert_array_equal(result, hand)
 
 
-def test_steps_yield_every_level_and_run_each_once(engine, levels):
+def test_steps_yield_every_level_and_run_each_once(any_engine, levels):
     sketch = levels.sketch(LOOP, size="size = 33")
-    assert [values.shape[0] for _, values in engine.steps(sketch, "a")] == [5, 5, 9, 17, 33]
-    assert engine.runs["a"] == 4
-    before = next(iter(engine.steps(sketch, "a")))[1]
+    assert [values.shape[0] for _, values in any_engine.steps(sketch, "a")] == [5, 5, 9, 17, 33]
+    assert any_engine.runs["a"] == 4
+    before = next(iter(any_engine.steps(sketch, "a")))[1]
     y, x = np.round(np.mgrid[0:5, 0:5] * 8)
     assert before.shape == (5, 5) and (np.abs(before - 2.0 * (x - y)) <= 2.0 * 8).all()
 
 
-def test_a_technique_in_the_loop_has_its_sizes_and_counts(engine, levels):
+def test_a_technique_in_the_loop_has_its_sizes_and_counts(any_engine, levels):
     sketch = levels.sketch(LOOP.replace("./grow", "./one"), size="size = 33")
-    result = engine.read(sketch, "a")
+    result = any_engine.read(sketch, "a")
     hand, before = '\n[[pass]]\nname = "start"\nuse = "./start"\n', "start"
     for number, (side, count) in enumerate([(5, 5), (9, 3), (17, 2), (33, 1)]):
         hand += f'[[pass]]\nname = "g{number}"\nuse = "./grow"\nsize = {side}\n'
@@ -715,12 +715,12 @@ def test_a_technique_in_the_loop_has_its_sizes_and_counts(engine, levels):
         hand += f'[[pass]]\nname = "s{number}"\nuse = "./smooth"\nsize = {side}\nrepeat = {count}\n'
         hand += f'inputs = {{ ground_before = "g{number}" }}\nfeedback = {{ ground_before = "ground" }}\n'
         before = f"s{number}"
-    np.testing.assert_array_equal(result, engine.read(levels.sketch(hand, size="size = 33"), "s3"))
+    np.testing.assert_array_equal(result, any_engine.read(levels.sketch(hand, size="size = 33"), "s3"))
     assert repeats_of(sketch) == {"a": 4, "a.smooth": 5}
-    assert [len(v) for _, v in engine.steps(sketch, "a.smooth")] == [33] * 6
+    assert [len(v) for _, v in any_engine.steps(sketch, "a.smooth")] == [33] * 6
 
 
-def test_the_innermost_loop_gives_the_names(engine, levels):
+def test_the_innermost_loop_gives_the_names(any_engine, levels):
     levels.write(
         "inner.toml",
         '[[pass]]\nname = "in"\nuse = "./grow"\nrepeat = "iteration + 1"\n'
@@ -730,12 +730,12 @@ def test_the_innermost_loop_gives_the_names(engine, levels):
     sketch = levels.sketch(passes(a=("./inner", "repeat = 3", 'feedback = { ground_before = "ground" }')))
     sides = [2**j + n for n in (1, 2, 3) for j in range(1, n + 1)]
     hand = by_hand(sides).replace('inputs = { ground_before = "start" }\n', "")
-    result = engine.read(sketch, "a")
+    result = any_engine.read(sketch, "a")
     assert result.shape == (11, 11)
-    np.testing.assert_array_equal(result, engine.read(levels.sketch(hand), f"level{len(sides) - 1}"))
+    np.testing.assert_array_equal(result, any_engine.read(levels.sketch(hand), f"level{len(sides) - 1}"))
 
 
-def test_feedback_input_has_size_of_previous_iteration(engine, levels):
+def test_feedback_input_has_size_of_previous_iteration(any_engine, levels):
     levels.write(
         "twice.toml",
         '[[pass]]\nname = "grow"\nuse = "./grow"\nsize = "2 * ground_before.size.x - 1 + 0 * iteration"\n'
@@ -747,17 +747,19 @@ def test_feedback_input_has_size_of_previous_iteration(engine, levels):
         'feedback = { ground_before = "ground" }\n'
     )
     hand = by_hand([5, 9, 17]).replace('use = "./start"\n', 'use = "./start"\nsize = 3\n')
-    np.testing.assert_array_equal(engine.read(sketch, "a"), engine.read(levels.sketch(hand), "level2"))
+    np.testing.assert_array_equal(
+        any_engine.read(sketch, "a"), any_engine.read(levels.sketch(hand), "level2")
+    )
 
 
-def test_outside_its_size_is_that_of_the_last_iteration(engine, levels):
+def test_outside_its_size_is_that_of_the_last_iteration(any_engine, levels):
     after = '[[pass]]\nname = "b"\nuse = "./smooth"\nsize = "a.size.x"\ninputs = { ground_before = "a" }\n'
     sketch = levels.sketch(LOOP.replace("repeat = 4", 'repeat = "3"') + after, size="size = 33")
-    assert engine.read(sketch, "b").shape == (33, 33)
-    assert engine.read(sketch, "b", steps={"a": 2}).shape == (17, 17)
+    assert any_engine.read(sketch, "b").shape == (33, 33)
+    assert any_engine.read(sketch, "b", steps={"a": 2}).shape == (17, 17)
 
 
-def test_constant_pass_runs_once_and_resized_pass_each_level(engine, levels):
+def test_constant_pass_runs_once_and_resized_pass_each_level(any_engine, levels):
     levels.write(
         "two.glsl",
         '#pragma kernel(output = "ground:r32f")\nuniform sampler2D ground_before; //! input("black")\n'
@@ -775,56 +777,56 @@ def test_constant_pass_runs_once_and_resized_pass_each_level(engine, levels):
         f'[[pass]]\nname = "a"\nuse = "./both"\nrepeat = 3\nsize = {COARSE}\n'
         'feedback = { ground_before = "ground" }\n'
     )
-    result = engine.read(sketch, "a")
-    assert engine.runs == {"a.once": 1, "a.each": 3, "a.two": 3}
+    result = any_engine.read(sketch, "a")
+    assert any_engine.runs == {"a.once": 1, "a.each": 3, "a.two": 3}
     assert result[0, 0] == 3 * 6 + 4 + 8 + 16
 
 
-def test_only_what_is_stale_runs_again(engine, levels):
+def test_only_what_is_stale_runs_again(any_engine, levels):
     sketch = levels.sketch(LOOP, size="size = 33")
-    engine.texture(sketch, "a")
-    engine.texture(sketch, "a")
-    assert engine.record.ran == []
+    any_engine.texture(sketch, "a")
+    any_engine.texture(sketch, "a")
+    assert any_engine.record.ran == []
     changed = sketch.with_values({"a.rise": 2.0})
-    result = engine.read(changed, "a").copy()
-    assert engine.record.ran == ["a"] * 4
-    with Engine(engine.ctx, driver=engine.driver) as fresh:
+    result = any_engine.read(changed, "a").copy()
+    assert any_engine.record.ran == ["a"] * 4
+    with Engine(any_engine.ctx) as fresh:
         np.testing.assert_array_equal(result, fresh.read(changed, "a"))
 
 
-def test_more_levels_restart_loop_as_first_sizes_differ(engine, levels):
-    engine.texture(levels.sketch(LOOP, size="size = 33"), "a")
+def test_more_levels_restart_loop_as_first_sizes_differ(any_engine, levels):
+    any_engine.texture(levels.sketch(LOOP, size="size = 33"), "a")
     more = levels.sketch(LOOP.replace("repeat = 4", "repeat = 5"), size="size = 33")
-    result = engine.read(more, "a")
-    assert engine.record.ran == ["a"] * 5
-    hand = engine.read(levels.sketch(by_hand([3, 5, 9, 17, 33]), size="size = 33"), "level4")
+    result = any_engine.read(more, "a")
+    assert any_engine.record.ran == ["a"] * 5
+    hand = any_engine.read(levels.sketch(by_hand([3, 5, 9, 17, 33]), size="size = 33"), "level4")
     np.testing.assert_array_equal(result, hand)
 
 
-def test_a_size_of_a_later_iteration_is_in_the_key(engine, levels):
+def test_a_size_of_a_later_iteration_is_in_the_key(any_engine, levels):
     result = []
     for side in (9, 8):
         sketch = levels.sketch(LOOP.replace(COARSE, f'"{side} if iteration == 2 else 5"'))
-        result.append(engine.read(sketch, "a").copy())
+        result.append(any_engine.read(sketch, "a").copy())
         hand = levels.sketch(by_hand([5, 5, side, 5]))
-        np.testing.assert_array_equal(result[-1], engine.read(hand, "level3"))
+        np.testing.assert_array_equal(result[-1], any_engine.read(hand, "level3"))
     assert not np.array_equal(*result)
 
 
-def test_a_value_that_a_size_names_makes_the_plan_anew(engine, levels):
+def test_a_value_that_a_size_names_makes_the_plan_anew(any_engine, levels):
     levels.write(
         "sized.glsl",
         GROW.replace("uniform float rise", "uniform int side = 3; //! slider(1, 9)\nuniform float rise"),
     )
     loop = LOOP.replace("./grow", "./sized").replace(COARSE, '"a.side + 2 * iteration"')
     sketch = levels.sketch(loop)
-    assert engine.read(sketch, "a").shape == (9, 9)
-    assert engine.read(sketch.with_values({"a.side": 5}), "a").shape == (11, 11)
+    assert any_engine.read(sketch, "a").shape == (9, 9)
+    assert any_engine.read(sketch.with_values({"a.side": 5}), "a").shape == (11, 11)
 
 
-def test_a_loop_of_no_iteration_has_the_size_of_the_only_one(engine, levels):
+def test_a_loop_of_no_iteration_has_the_size_of_the_only_one(any_engine, levels):
     sketch = levels.sketch(LOOP.replace("repeat = 4", "repeat = 0"))
-    assert engine.read(sketch, "a").shape == (17, 17)
+    assert any_engine.read(sketch, "a").shape == (17, 17)
 
 
 def test_one_plan_has_one_step_for_one_size(levels):
@@ -870,13 +872,13 @@ def test_mistakes_are_said_in_a_sentence(levels, text, sentence):
     assert caught.value.diagnostics[0].message == sentence
 
 
-def test_a_technique_outside_any_loop_is_in_iteration_0_of_1(engine, levels):
+def test_a_technique_outside_any_loop_is_in_iteration_0_of_1(any_engine, levels):
     sketch = levels.sketch('[[pass]]\nname = "a"\nuse = "./one"\n')
     assert repeats_of(sketch) == {"a.smooth": 5}
-    assert engine.read(sketch, "a").shape == (17, 17)
+    assert any_engine.read(sketch, "a").shape == (17, 17)
 
 
-def test_a_parameter_of_that_name_comes_before_the_loop(engine, levels):
+def test_a_parameter_of_that_name_comes_before_the_loop(any_engine, levels):
     levels.write(
         "named.toml",
         '[[pass]]\nname = "grow"\nuse = "./grow"\nsize = "iterations + 2"\n'
@@ -886,4 +888,4 @@ def test_a_parameter_of_that_name_comes_before_the_loop(engine, levels):
         '[[pass]]\nname = "a"\nuse = "./named"\nrepeat = 3\nfeedback = { ground_before = "ground" }\n'
         "set = { iterations = 5 }\n"
     )
-    assert engine.read(sketch, "a").shape == (7, 7)
+    assert any_engine.read(sketch, "a").shape == (7, 7)

@@ -481,18 +481,10 @@ def cached_of(shelf: Shelf, sketch, **options) -> set[str]:
 
 
 def test_time_and_camera_passes_and_their_readers_are_not_cached(any_shelf, folder):
-    text = ""
-    for name, reads, body in (
-        ("still", "", "0.5"),
-        ("moves", "still", "time"),
-        ("after", "moves", "0.25"),
-        ("sees", "still", "eye.x"),
-    ):
-        folder.write(f"{name}.glsl", TIMES.replace("REPEAT", "").replace("BODY", body))
-        wired = f'inputs = {{ before = "{reads}" }}\n' if reads else ""
-        text += f'[[pass]]\nname = "{name}"\nuse = "./{name}"\n{wired}'
+    timed = TIMES.replace("REPEAT", "")
+    bodies = {"still": "0.5", "moves": "time", "after": "0.25", "sees": "eye.x"}
+    folder.kernels(**{name: timed.replace("BODY", body) for name, body in bodies.items()})
     folder.write("grows.glsl", TIMES.replace("REPEAT", ', repeat = "2 + floor(time)"').replace("BODY", "0.1"))
-    text += '[[pass]]\nname = "grows"\nuse = "./grows"\ninputs = { before = "still" }\n'
     folder.write(
         "both.glsl",
         '#pragma kernel(output = "v:r32f")\nuniform sampler2D a; //! input\nuniform sampler2D b; //! input\n'
@@ -500,7 +492,14 @@ def test_time_and_camera_passes_and_their_readers_are_not_cached(any_shelf, fold
         "float kernel(ivec2 texel) { return texelFetch(a, texel, 0).r + texelFetch(b, texel, 0).r"
         " + texelFetch(c, texel, 0).r; }\n",
     )
-    text += '[[pass]]\nname = "both"\nuse = "./both"\ninputs = { a = "after", b = "sees", c = "grows" }\n'
+    text = passes(
+        still="./still",
+        moves=("./moves", 'inputs = { before = "still" }'),
+        after=("./after", 'inputs = { before = "moves" }'),
+        sees=("./sees", 'inputs = { before = "still" }'),
+        grows=("./grows", 'inputs = { before = "still" }'),
+        both=("./both", 'inputs = { a = "after", b = "sees", c = "grows" }'),
+    )
     assert cached_of(any_shelf, folder.sketch(text)) == {"still"}
 
 

@@ -29,7 +29,6 @@ from playground.sketch import files
 from playground.sketch.files import contents, find_file
 from playground.sketch.load import load
 from playground.sketch.save import save, save_copy
-from playground.studio.reload.dependencies import data_files
 
 from ..sketch_texts import passes
 
@@ -313,6 +312,8 @@ def test_the_contents_change_with_them(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 def test_they_are_watched_there_or_not(folder: Path) -> None:
+    from playground.studio.reload.dependencies import data_files
+
     (folder / "data/a.prj").unlink()
     paths = data_files(load(folder))
     assert {folder / "data" / name for name in ("a.bil", "a.hdr", "a.prj")} <= paths

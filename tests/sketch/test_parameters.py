@@ -11,7 +11,6 @@ from playground.commands.entries import Choice
 from playground.engine.sketch_warnings import unread
 from playground.errors import ParameterError, ShaderError
 from playground.paths import SKETCHES
-from playground.publish.sweep import parts_of, sweep_text
 from playground.shader.header import parse_kernel
 from playground.shader.parameter import coerce, expected, write
 from playground.shader.source import read_source
@@ -28,7 +27,6 @@ from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Kernel
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.save import save, saved_text
-from playground.studio.panel.randomise import at_random, mutated
 from playground.verify.reduce.case import inline_sketch
 
 from ..cases import each
@@ -526,12 +524,16 @@ def test_it_is_saved_by_its_label(widgets):
 
 
 def test_it_is_reduced_to_the_same_values(widgets):
+    from playground.verify.reduce.inline import inline_sketch
+
     case = inline_sketch(widgets('set = { mode = "none" }'), frame=(8, 8))
     assert dict(case.passes[0].values)["mode"] == 2
     assert "values(-3, 9, 40)" in case.passes[0].text
 
 
 def test_random_values_keep_to_each_range_and_press_nothing(widgets):
+    from playground.studio.panel.randomise import at_random, mutated
+
     result = [(name, p) for name, p in parameters(widgets()).items()]
     now = {name: p.default for name, p in result}
     for seed in range(40):
@@ -541,6 +543,8 @@ def test_random_values_keep_to_each_range_and_press_nothing(widgets):
 
 
 def test_a_sweep_goes_through_labels_and_ranges(widgets):
+    from playground.publish.sweep import parts_of, sweep_text
+
     result = parameters(widgets())
     assert sweep_text("a.mode", result["mode"]) == "a.mode=soft,hard,none"
     assert parts_of(result["place"]) == ("x", "y")
