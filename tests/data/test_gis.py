@@ -539,6 +539,7 @@ def test_a_grid_of_text_has_its_cells_and_their_system_next_to_it(tmp_path):
     np.testing.assert_array_equal(elevation.heights[::-1], GRID)
     assert elevation.spacing is None and elevation.in_metres
     assert "there is no a.prj next to it" in elevation.notes[0]
+    assert "there is no b.prj next to it" in read_elevation(flt(tmp_path / "b.flt")).notes[0]
     for system, metres in (("EPSG:32633", 1.0), ("EPSG:2264", 1200 / 3937)):
         path.with_suffix(".prj").write_text(CRS.from_user_input(system).to_wkt(version="WKT1_ESRI"))
         elevation = read_elevation(path)
