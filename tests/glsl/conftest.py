@@ -16,8 +16,10 @@ from playground.shader.source import read_source
 from playground.sketch.model import Sketch
 
 from ..loading import load
-from .terrains import toml_value
+from ..sketch_texts import passes, toml_value, use
 
+BOTH_TEXTS = pytest.mark.parametrize("engine", ["fragment", "auto"], indirect=True)
+"""For a technique that has a second text, a fast variant: both are compared with the truth."""
 TYPES = [kind + n for kind in ("uint", "int", "float") for n in ("", "2", "3", "4")]
 LETTERS = {"uint": ("u", "u4", np.uint32), "int": ("i", "i4", np.int32), "float": ("", "f4", np.float32)}
 
@@ -91,19 +93,28 @@ def kept(shared_context: moderngl.Context) -> Iterator[Engine]:
 
 
 @pytest.fixture
-def same_by_both_drivers(ctx: moderngl.Context) -> Callable[[Callable[[Engine], np.ndarray]], None]:
-    """Give what sees that both drivers read the same bits; skips where there are no compute shaders."""
+def engine(request: pytest.FixtureRequest, ctx: moderngl.Context) -> Iterator[Engine]:
+    """Give an engine that runs the canonical texts: test_drivers proves that both drivers give their bits.
+
+    Under ``BOTH_TEXTS`` it runs fast variants as well, where there is another text to be tested.
+    """
+    with Engine(ctx, driver=getattr(request, "param", "fragment")) as made:
+        yield made
+
+
+@pytest.fixture
+def compute(ctx: moderngl.Context) -> moderngl.Context:
+    """Give the context where there are compute shaders."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
+    return ctx
 
-    def see(read: Callable[[Engine], np.ndarray]) -> None:
-        result = []
-        for driver in ("fragment", "compute"):
-            with Engine(ctx, driver=driver) as engine:
-                result.append(read(engine))
-        np.testing.assert_array_equal(*result)
 
-    return see
+@pytest.fixture
+def both_texts(compute: moderngl.Context) -> Iterator[tuple[Engine, Engine]]:
+    """Give an engine that runs canonical texts, and one that runs their fast variants."""
+    with Engine(compute, driver="fragment") as canonical, Engine(compute) as fast:
+        yield canonical, fast
 
 
 def _column(value: object) -> tuple[np.ndarray, str]:
@@ -135,7 +146,7 @@ def _out(kind: str) -> str:
 
 @pytest.fixture
 def make_sketch(tmp_path: Path) -> Callable[..., Sketch]:
-    """Give ``make_sketch(passes, size=…, files={name: text})``: a sketch written to a folder and loaded."""
+    """Give ``make_sketch(passes, size=…, extent=…, name=text)``: a sketch written to a folder and loaded."""
     numbers = iter(range(1_000_000))
 
     def make(
@@ -143,10 +154,31 @@ def make_sketch(tmp_path: Path) -> Callable[..., Sketch]:
     ) -> Sketch:
         for name, text in files.items():
             (tmp_path / f"{name}.glsl").write_text(text)
-        head = f"format = 1\nsize = {size}\nextent = {extent}\nrelief = {relief}\n"
+        head = f"format = 1\nsize = {toml_value(size)}\nextent = {toml_value(extent)}\nrelief = {relief}\n"
         path = tmp_path / f"sketch_{next(numbers)}.toml"
         path.write_text(head + passes)
         return load(path)
+
+    return make
+
+
+@pytest.fixture
+def single(make_sketch: Callable[..., Sketch]) -> Callable[..., Sketch]:
+    """Give ``single(technique, size=…, extent=…, **parameters)``: a sketch of it, as the pass ``terrain``.
+
+    ``before`` are passes that its ``inputs`` name.
+    """
+
+    def make(
+        technique: str,
+        size: object = 33,
+        extent: object = 1000.0,
+        before: str = "",
+        inputs: dict[str, str] | None = None,
+        **values: object,
+    ) -> Sketch:
+        terrain = passes(terrain=use(technique, inputs=inputs, **values))
+        return make_sketch(before + terrain, size=size, extent=extent)
 
     return make
 
@@ -170,43 +202,11 @@ def lit(make_sketch: Callable[..., Sketch]) -> Callable[..., Sketch]:
         given: dict[str, object] | None = None,
         **values: object,
     ) -> Sketch:
-        values = {"sun": list(sun), **{k: v for k, v in values.items() if v is not None}}
-        settings = ["".join(f"{k} = {toml_value(v)}\n" for k, v in s.items()) for s in (given or {}, values)]
-        at = f"size = {light_size}\n" if light_size else ""
-        passes = (
-            f'[[pass]]\nname = "height"\nuse = "./terrain"\n[pass.set]\n{settings[0]}'
-            f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n{at}[pass.set]\n{settings[1]}'
+        values = {k: v for k, v in values.items() if v is not None}
+        at = (f"size = {light_size}",) if light_size else ()
+        both = passes(
+            height=use("./terrain", **(given or {})), light=use(f"lighting/{method}", *at, sun=sun, **values)
         )
-        return make_sketch(passes, size=size, extent=extent, relief=relief, terrain=terrain)
+        return make_sketch(both, size=size, extent=extent, relief=relief, terrain=terrain)
 
     return make
-
-
-@pytest.fixture(scope="session")
-def python_random() -> Callable[..., np.ndarray]:
-    """Give noise/hash.glsl's ``random(point, seed)`` in Python: x and y broadcast, float64 in [0, 1).
-
-    ``part`` 1 is the second number of ``random_pair``.
-    """
-
-    def number(x: object, y: object, seed: int, part: int = 0) -> np.ndarray:
-        return np.asarray(mixed(x, y, seed)[part] // 256, np.float64) / 2.0**24
-
-    return number
-
-
-def mixed(x: object, y: object, z: object) -> list[np.ndarray]:
-    """Mix three whole numbers as pcg3d does, with Python's own integers, which never overflow."""
-    whole = 2**32
-    pythons = np.frompyfunc(int, 1, 1)
-    v = [np.asarray(pythons(n), object) % whole * 1664525 + 1013904223 for n in (x, y, z)]
-
-    def stir() -> None:
-        for i in range(3):
-            v[i] = (v[i] + v[(i + 1) % 3] * v[(i + 2) % 3]) % whole
-
-    stir()
-    for i in range(3):
-        v[i] = v[i] ^ (v[i] // 2**16)
-    stir()
-    return v

@@ -427,21 +427,3 @@ def test_from_a_height_it_is_the_sky_of_that_height(engine, make_sketch, height,
         np.testing.assert_allclose(
             result[y, x], truth, rtol=0.05, atol=0.1 * truth.max(), err_msg=f"{x}, {y}"
         )
-
-
-def test_horizon_at_606_metres_has_a_third_more_blue_than_at_sea(engine, make_sketch):
-    """Half of the haze lies below; the level horizon of the sea's own sky lacks it."""
-    value = 'position = "free", sun = [150.0, 40.0], turbidity = 3.0, adaptation = 0.0'
-    seen = '[[pass]]\nname = "seen"\nuse = "./from_above"\nsize = [50, 9]\n'
-    sketch = make_sketch(f"{SKETCH}set = {{ {value} }}\n{seen}", from_above=FROM_ABOVE)
-    sea, above = (
-        engine.read(sketch.with_values({"seen.height": height}), "seen")[0, 40, 2] for height in (0.0, 0.606)
-    )
-    table = engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
-    lowest = -np.sqrt(1 - (RADIUS / (RADIUS + 0.606)) ** 2) + 2e-4
-    true = []
-    for height, rise in ((0.0, 2e-4), (0.606, lowest)):
-        aerosol, rest, together = sky(rise, np.cos(np.radians(40 * 7.3 - 150)), 40.0, 3.0, table, height)
-        phase = 3 / (8 * np.pi) * 0.36 / 2.64 * (1 + together**2) / (1.64 - 1.6 * together) ** 1.5
-        true.append((rest + phase * aerosol)[2])
-    assert above / sea == pytest.approx(true[1] / true[0], rel=0.1) and above > 1.1 * sea

@@ -6,7 +6,7 @@
 import numpy as np
 import pytest
 
-from ..truth.land import Land, cone, real, towards
+from ..truth.land import Land, real, towards
 from ..truth.sun import sunlight
 from .terrains import lit_by
 
@@ -172,16 +172,6 @@ def test_the_sun_on_its_arc(read, sun):
     np.testing.assert_allclose(light[..., 3], np.where(light[..., 0] > 0, seen, 0), atol=2e-3)
 
 
-@pytest.mark.parametrize("sun", [(250, 8), (250, 20), (45, 15)], ids=str)
-def test_it_is_dark_where_a_cast_ray_is_dark(read, sun):
-    """But for what the sun's width and a texel of the shadow's edge make."""
-    terrain = steep(65)
-    light = read(terrain, "horizon_sun", "light", sun=sun, arc=float(sun[0]), gain=1.0)
-    ray = read(terrain, "ray_cast", "light", sun=sun, gain=1.0)
-    hidden, lit = ray[..., 3] == 0, light[..., 3] > 0.5
-    assert (hidden & lit).mean() < 0.01 and (~hidden & ~lit & (ray[..., 0] > 0.01)).mean() < 0.02
-
-
 def test_a_table_of_normals_is_close(read):
     terrain = steep()
     values = {"sun": (135, 30), "gain": 1.0}
@@ -322,45 +312,6 @@ def test_a_daylights_sun_keeps_to_no_arc(kept, sketch):
     np.testing.assert_array_equal(arc, eight)
 
 
-@pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
-@pytest.mark.parametrize("measured", ["on its arc", "eight directions"])
-@pytest.mark.parametrize("sun", [(0, 90), (90, 0), (135, -5), (135, -90), (359.999, 1), (45, 0.0)], ids=str)
-def test_suns_at_the_ends(read, use, measured, sun):
-    for terrain in (steep(17), Land(np.zeros((8, 5)), (3.0, 4.0))):
-        light, seen = read(terrain, use, "light", "visibility", sun=sun, measured=measured, ambient=0.0)
-        assert light.min() >= 0 and seen.min() >= 0 and seen.max() <= 1
-        if sun[1] < -1:
-            assert (light == 0).all() and (seen == 0).all()
-        if sun[1] == 90:
-            assert (seen == 1).all()
-
-
-@pytest.mark.parametrize("shape", [(2, 2), (2, 7), (7, 2)], ids=str)
-@pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
-def test_tiny_terrains(read, use, shape):
-    terrain = Land(np.random.default_rng(4).random(shape) * 30, (10.0, 10.0))
-    assert read(terrain, use, "light").min() >= 0
-
-
-def test_needles_and_walls(read):
-    heights = np.zeros((25, 25))
-    heights[:, 12] = 1e5
-    heights[4, 4] = 1e6
-    terrain = Land(heights, (1.0, 1.0))
-    light, seen = read(terrain, "analytic", "light", "visibility", sun=(90, 30), gain=1.0)
-    assert seen[20, 5] == 0 and seen[20, 20] == 1 and light.min() >= 0
-
-
-@pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
-def test_mirrored_terrain_under_a_mirrored_sun(read, use):
-    terrain = steep()
-    mirrored = Land(terrain.heights[:, ::-1].copy(), terrain.spacing)
-    straight = read(terrain, use, "light", sun=(135, 20), arc=135.0)
-    across = read(mirrored, use, "light", sun=(-135, 20), arc=-135.0)[:, ::-1]
-    # The table of normals has no middle between two of them.
-    assert (np.abs(across - straight) > 0.02).mean() < 0.002
-
-
 # Sun, sky and terrain together
 
 
@@ -385,22 +336,6 @@ def test_clouds_dim_the_sun_and_leave_the_sky(read):
     np.testing.assert_allclose(lights[2], sky, atol=1e-3)
     each = read(terrain, "analytic", "light", clouds=0.5, sun_term="each texel")[..., :3]
     np.testing.assert_allclose(each, lights[1], atol=0.012)
-
-
-def test_flat_terrain_is_lit_evenly(read):
-    terrain = Land(np.full((9, 12), 7.0), (10.0, 25.0))
-    light = read(terrain, "analytic", "light", sun=(77, 30), gain=1.0, ambient=0.25)
-    np.testing.assert_allclose(light[..., :3], 0.75, rtol=2 * HALF)
-
-
-def test_lifting_the_terrain_changes_nothing(read):
-    terrain = cone(33)
-    low = terrain.heights.copy()
-    low[0, 0] -= 500  # all else stands higher over height 0
-    plain, lifted = (
-        read(terrain, "analytic", "light", sun=(250, 15)) for terrain in (terrain, Land(low, terrain.spacing))
-    )
-    assert (np.abs(plain - lifted)[8:, 8:] > 0.01).mean() < 0.01
 
 
 def test_daylight_takes_the_place_of_sun_and_sky(kept, sketch):

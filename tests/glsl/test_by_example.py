@@ -5,7 +5,8 @@ import pytest
 from scipy.ndimage import gaussian_filter, map_coordinates
 from scipy.special import ndtr
 
-from .drawing import salt
+from ..sketch_texts import passes, use
+from ..truth.noise import python_random, salt
 
 RNG = np.random.default_rng(6)
 SIDE = 96
@@ -18,24 +19,20 @@ def blended(engine, make_sketch, tmp_path):
     heights = (heights - heights.min()) / np.ptp(heights)
     np.save(tmp_path / "example.npy", heights.astype(np.float32))
 
-    def draw(size=(128, 128), extent=(20000.0, 20000.0), base="", **values):
-        text = ", ".join(f"{k} = {v}" for k, v in values.items())
-        sketch = make_sketch(
-            f'[[pass]]\nname = "example"\nuse = "generation/heightmap"\nsize = {SIDE}\n'
-            'set = { elevation = "example.npy", first_row = "south" }\n'
-            '[[pass]]\nname = "hills"\nuse = "generation/gradient_noise"\nsize = 33\n'
-            '[[pass]]\nname = "noise"\nuse = "generation/by_example"\n'
-            f'inputs = {{ example = "example" {base} }}\nset = {{ {text} }}\n',
-            size=list(size),
-            extent=list(extent),
+    def draw(size=(128, 128), extent=(20000.0, 20000.0), base=None, **values):
+        text = passes(
+            example=use("generation/heightmap", size=SIDE, elevation="example.npy", first_row="south"),
+            hills=use("generation/gradient_noise", size=33),
+            noise=use("generation/by_example", inputs={"example": "example"} | (base or {}), **values),
         )
+        sketch = make_sketch(text, size=size, extent=extent)
         refs = ("noise.ranks:normal", "noise.ranks:sorted", "noise", "hills")
         return [engine.read(sketch, ref).astype(np.float64) for ref in refs]
 
     return draw
 
 
-def test_hexagons_are_blended_as_they_say(blended, python_random):
+def test_hexagons_are_blended_as_they_say(blended):
     """Each texel from the three nearest of all corners, by its place among them."""
     width, cells, sharpness, seed = 9000.0, 2.5, 2.0, 4
     normal, ranks, result, _ = blended((40, 31), (12000.0, 8000.0), width=width, cells=cells,
@@ -76,7 +73,7 @@ def test_the_histogram_is_the_example_s(blended):
 
 def test_it_is_added_to_a_base_of_any_size(blended):
     alone = blended((65, 65), amount=0.3)[2]
-    *_, added, hills = blended((65, 65), amount=0.3, base=', base = "hills"')
+    *_, added, hills = blended((65, 65), amount=0.3, base={"base": "hills"})
     y, x = np.mgrid[0:65, 0:65] / 2
     np.testing.assert_allclose(added - alone, map_coordinates(hills, [y, x], order=1), atol=1e-6)
     np.testing.assert_allclose(blended((65, 65), amount=0.0)[2], 0.0, atol=0)

@@ -137,15 +137,3 @@ def test_wild_heights_harm_nothing(engine, picture):
     shown = picture(engine, height, (9, 1), (90, 60))
     assert not (shown == (1, 0, 1)).all(axis=-1).any()
     assert ink(shown)[29:31, :8].max() > 0.5
-
-
-def test_both_drivers_draw_the_same_picture(ctx, picture):
-    from playground.engine.engine import Engine
-
-    if ctx.version_code < 430:
-        pytest.skip("this context has no compute shaders")
-    result = []
-    for driver in ("fragment", "compute"):
-        with Engine(ctx, driver=driver) as engine:
-            result.append(picture(engine, "0.5 + 0.4 * sin(float(texel.x))", (50, 3), (120, 90), axis=True))
-    np.testing.assert_array_equal(*result)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
-from playground.engine.engine import Engine
 from playground.sketch.model import Camera, kernels_of
 from playground.sketch.wiring import input_names
 
@@ -316,16 +315,6 @@ def test_daylight_says_how_hazy_and_how_cloudy_it_is(engine, day):
         np.testing.assert_array_equal(
             engine.read(sketch, f"daylight:{name}"), engine.read(sketch, f"daylight.{name}")
         )
-
-
-def test_both_drivers_give_the_same_bits(ctx, day):
-    if ctx.version_code < 430:
-        pytest.skip("this context has no compute shaders")
-    sketch = day(position="date and hour", clouds=0.3, adaptation=0.75)
-    with Engine(ctx, driver="fragment") as fragment, Engine(ctx, driver="compute") as compute:
-        for ref in ("daylight", "daylight.columns", "daylight.bounced", "daylight.dome"):
-            first, other = fragment.read(sketch, ref), compute.read(sketch, ref)
-            np.testing.assert_array_equal(first.view(np.uint32), other.view(np.uint32))
 
 
 HILLS = """

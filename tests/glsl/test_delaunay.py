@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 from fractions import Fraction
-from zlib import crc32
+from functools import partial
 
 import numpy as np
 import pytest
@@ -15,12 +15,13 @@ from scipy.interpolate import LinearNDInterpolator
 from playground.data.delaunay import Rules, Triangulation, triangulate
 from playground.engine.engine import Engine
 from playground.errors import DataError
-from playground.memo import SOURCES
 from playground.paths import GLSL
 from playground.sketch.model import kernels_of
 from playground.sketch.techniques import read_technique
 
 from ..loading import load
+from ..sketch_texts import kernel, passes, use
+from ..truth.noise import python_random, salt
 
 TABLES = "generation/delaunay/tables.glsl"
 DRAWN = "generation/delaunay/picture/drawn.glsl"
@@ -28,14 +29,9 @@ SIZES = [(2, 2), (3, 3), (5, 5), (33, 33), (513, 513), (37, 22), (2, 300), (130,
 
 
 @pytest.fixture
-def terrain(make_sketch):
+def terrain(single):
     """Give a function that makes a sketch of the terrain: its size and its parameters."""
-
-    def make(size=(33, 33), **values):
-        sketch = make_sketch('[[pass]]\nname = "terrain"\nuse = "generation/delaunay"\n', size=list(size))
-        return sketch.with_values({f"terrain.{name}": value for name, value in values.items()})
-
-    return make
+    return partial(single, "generation/delaunay")
 
 
 def rules_of(**values) -> Rules:
@@ -135,11 +131,11 @@ def test_both_drivers_and_both_methods_give_the_same_bits(ctx, terrain):
             np.testing.assert_array_equal(mine, first)
 
 
-def test_heights_are_the_hash_s_numbers(any_engine, terrain, python_random):
+def test_heights_are_the_hash_s_numbers(any_engine, terrain):
     """noise/hash.glsl's random(ivec2(point, 0), seed + salt), for points numbered after the four corners."""
     made = triangulate(Rules(points=50, seed=123))
     np.testing.assert_array_equal(
-        made.heights[4:], python_random(np.arange(4, 54), 0, 123 + crc32(b"delaunay"))
+        made.heights[4:], python_random(np.arange(4, 54), 0, 123 + salt("delaunay"))
     )
     table = any_engine.read(terrain(points=50, seed=123), "terrain.triangulation:places").reshape(-1, 4)
     np.testing.assert_array_equal(table[:54, 2], made.heights.astype(np.float32))
@@ -169,24 +165,6 @@ def test_every_parameter_reaches_the_triangulation(any_engine, terrain):
     assert smooth.std() < 0.7 * rough.std()
 
 
-def test_repeated_it_is_the_same(ctx, terrain):
-    sketch = terrain((65, 65), points=300)
-    result = []
-    for _ in range(2):
-        SOURCES.drop_of(triangulate)
-        with Engine(ctx) as engine:
-            result.append(engine.read(sketch, "terrain"))
-    np.testing.assert_array_equal(*result)
-
-
-def test_it_is_normalised_unless_that_is_off(any_engine, terrain):
-    result = any_engine.read(terrain(points=60), "terrain")
-    assert (result.min(), result.max()) == (0.0, 1.0)
-    sketch = terrain(points=60, normalise="none")
-    np.testing.assert_array_equal(any_engine.read(sketch, "terrain"), any_engine.read(sketch, "terrain.tin"))
-    np.testing.assert_array_equal(any_engine.read(terrain(points=0), "terrain"), 0.0)
-
-
 def test_samples_of_the_view_leave_heights_alone(any_engine, terrain):
     sketch = terrain((33, 33), points=60)
     first = any_engine.read(sketch.with_picture(samples=1), "terrain.tin")
@@ -195,16 +173,14 @@ def test_samples_of_the_view_leave_heights_alone(any_engine, terrain):
 
 
 def test_more_triangles_than_there_are_add_nothing(any_engine, make_sketch):
-    sketch = make_sketch(
-        '[[pass]]\nname = "made"\nuse = "generation/delaunay/triangulation"\nset = { points = 20 }\n'
-        '[[pass]]\nname = "tin"\nuse = "generation/delaunay/tin"\nset = { points = 20 }\n'
-    )
+    tin = use("generation/delaunay/tin", points=20)
+    sketch = make_sketch(passes(made=use("generation/delaunay/triangulation", points=20), tin=tin))
     first = any_engine.read(sketch, "tin")
     np.testing.assert_array_equal(any_engine.read(sketch.with_values({"tin.points": 400}), "tin"), first)
 
 
 def test_a_triangulation_that_does_not_fit_has_a_sentence(any_engine, make_sketch):
-    sketch = make_sketch('[[pass]]\nname = "made"\nuse = "generation/delaunay/triangulation"\n', size=9)
+    sketch = make_sketch(passes(made="generation/delaunay/triangulation"), size=9)
     with pytest.raises(DataError, match="122 entries do not fit into 9 x 9 texels") as caught:
         any_engine.read(sketch, "made:places")
     assert caught.value.diagnostics[0].line == 5
@@ -290,11 +266,8 @@ def picture(any_engine, make_sketch):
     """Give a function that draws a triangulation: (pixels south first, its pixel of a lattice place)."""
 
     def draw(rules: dict[str, object], **values):
-        sketch = make_sketch(
-            '[[pass]]\nname = "made"\nuse = "generation/delaunay/triangulation"\n'
-            '[[pass]]\nname = "picture"\nuse = "generation/delaunay/picture"\n',
-            size=[WIDTH, HEIGHT],
-        )
+        both = passes(made="generation/delaunay/triangulation", picture="generation/delaunay/picture")
+        sketch = make_sketch(both, size=(WIDTH, HEIGHT))
         value = {f"made.{k}": v for k, v in rules.items()}
         value |= {f"picture.{k}": v for k, v in ({"circles": "none", "margin": MARGIN} | values).items()}
         return any_engine.read(sketch.with_values(value), "picture")
@@ -429,18 +402,14 @@ def test_what_the_last_insertion_destroyed_is_filled_and_dashed(picture):
 
 def test_a_picture_may_lie_on_another(any_engine, make_sketch):
     """Nothing drawn, and white paper: what lies under it is what comes out."""
-    back = (
-        '#include "noise/hash.glsl"\n#pragma kernel(output = "back:rgba16f")\n'
-        "vec4 kernel(ivec2 texel) { return vec4(random_pair(texel, 1u), random(texel, 2u), 1.0); }\n"
+    back = kernel("vec4(random_pair(texel, 1u), random(texel, 2u), 1.0)", "back:rgba16f")
+    blank = {"circles": "all", "line": 0.0, "dot_radius": 0.0, "paper": (1.0, 1.0, 1.0)}
+    text = passes(
+        back="./back",
+        made="generation/delaunay/triangulation",
+        picture=use("generation/delaunay/picture", inputs={"under": "back"}, **blank),
     )
-    sketch = make_sketch(
-        '[[pass]]\nname = "back"\nuse = "./back"\n'
-        '[[pass]]\nname = "made"\nuse = "generation/delaunay/triangulation"\n'
-        '[[pass]]\nname = "picture"\nuse = "generation/delaunay/picture"\ninputs = { under = "back" }\n'
-        'set = { circles = "all", line = 0.0, dot_radius = 0.0, paper = [1.0, 1.0, 1.0] }\n',
-        size=65,
-        back=back,
-    )
+    sketch = make_sketch(text, size=65, back=back)
     result, under = any_engine.read(sketch, "picture"), any_engine.read(sketch, "back")
     np.testing.assert_allclose(result, under, atol=1e-3)
     lined = any_engine.read(sketch.with_values({"picture.line": 2.0, "picture.circles": "none"}), "picture")

@@ -5,11 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from .drawing import salt
+from ..sketch_texts import passes, use
+from ..truth.noise import pcg3d, salt
 
 FOLDS = "generation/deterministic_fractal/folds.glsl"
-LABEL = "generation/deterministic_fractal/label.glsl"
-FACETS = "generation/fractalised_triangle/facets.glsl"
 ROOT_3 = math.sqrt(3)
 
 # Where each copy's middle stands and what becomes of the two axes, for a set 1 wide in the
@@ -60,10 +59,6 @@ NAMES = [
     "Sierpinski triangle",
     "Sierpinski carpet",
 ]
-FUNCTIONS = dict(
-    zip(NAMES[1:], ["koch_curve", "cantor_dust", "vicsek_cross", "sierpinski_triangle", "sierpinski_carpet"],
-        strict=True)
-)  # fmt: skip
 COPIES = {"Cantor set": (2, 3), "Koch curve": (4, 3), "Cantor dust": (4, 3), "Vicsek cross": (5, 3),
           "Sierpinski triangle": (3, 2), "Sierpinski carpet": (8, 3)}  # fmt: skip
 
@@ -122,12 +117,9 @@ def test_the_bars_of_cantor(on_gpu, places, depth):
 
 @pytest.fixture
 def sketch_of(make_sketch):
-    def make(size, use="deterministic_fractal", **values):
-        value = "".join(
-            f"{k} = {str(v).lower() if isinstance(v, bool) else repr(v)}\n" for k, v in values.items()
-        )
-        text = f'[[pass]]\nname = "fractal"\nuse = "generation/{use}"\n[pass.set]\n{value}'
-        return make_sketch(text, size=list(size), extent=[float(n) for n in size])
+    def make(size, technique="deterministic_fractal", **values):
+        text = passes(fractal=use(f"generation/{technique}", **values))
+        return make_sketch(text, size=size, extent=[float(n) for n in size])
 
     return make
 
@@ -236,15 +228,6 @@ def test_ink_lies_on_the_set_and_fades_within_a_pixel(engine, sketch_of):
     assert (engine.read(wide, "fractal:colour")[..., 0] == 0).sum() > 1.1 * (shade == 0).sum()
 
 
-@pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 50), (50, 3)], ids=str)
-def test_tiny_pictures_are_numbers(engine, sketch_of, size):
-    for fractal in ("all", *NAMES):
-        for output in ("colour", "set_distance"):
-            assert np.isfinite(
-                engine.read(sketch_of(size, fractal=fractal, depth=8), f"fractal:{output}")
-            ).all()
-
-
 # ── the triangle ─────────────────────────────────────────────────────────────
 
 
@@ -278,18 +261,13 @@ def divided(depth, roughness, number):
     return result
 
 
-@pytest.fixture
-def number(on_gpu):
-    y, x = np.mgrid[0:65, 0:65]
-    points = np.stack([x.ravel(), y.ravel()], axis=1).astype(np.int32)
-    seed = np.uint32(7 + salt("generation/fractalised_triangle"))
-    drawn = on_gpu("noise/hash.glsl", "random_pair(p, s)", p=points, s=seed).reshape(65, 65, 2)
-    return lambda i, j: drawn[j, i].astype(np.float64)
+def number(i, j):
+    return np.array([n >> 8 for n in pcg3d(i, j, 7 + salt("generation/fractalised_triangle"))[:2]]) / 2.0**24
 
 
 @pytest.mark.parametrize("depth", [0, 1, 2, 4, 6])
 @pytest.mark.parametrize("roughness", [0.0, 0.15, 0.5])
-def test_the_triangle_is_divided(engine, sketch_of, number, depth, roughness):
+def test_the_triangle_is_divided(engine, sketch_of, depth, roughness):
     sketch = sketch_of((32, 32), "fractalised_triangle", depth=depth, roughness=roughness)
     result = engine.read(sketch, "fractal.points")
     truth = divided(depth, roughness, number)
@@ -299,25 +277,8 @@ def test_the_triangle_is_divided(engine, sketch_of, number, depth, roughness):
         np.testing.assert_allclose(result[j, i], position, atol=2e-6)
 
 
-def test_deeper_division_keeps_the_points_it_had(engine, sketch_of):
-    coarse, fine = (
-        engine.read(sketch_of((32, 32), "fractalised_triangle", depth=d), "fractal.points").copy()
-        for d in (3, 6)
-    )
-    upright = np.add.outer(np.arange(9), np.arange(9)) <= 8
-    np.testing.assert_array_equal(fine[::8, ::8][upright], coarse[upright])
-
-
-def test_one_seed_is_not_another(engine, sketch_of):
-    first, other = (
-        engine.read(sketch_of((32, 32), "fractalised_triangle", seed=s), "fractal.points").copy()
-        for s in (1, 2)
-    )
-    assert np.abs(first - other).max() > 0.05
-
-
 @pytest.mark.parametrize("depth", [0, 1, 3])
-def test_facets_have_a_shade_each_and_edges_are_ink(engine, sketch_of, number, depth):
+def test_facets_have_a_shade_each_and_edges_are_ink(engine, sketch_of, depth):
     values = {"depth": depth, "roughness": 0.1, "panels": False, "ink": "#000000", "paper": "#ffffff"}
     sketch = sketch_of((120, 120), "fractalised_triangle", **values)
     result = engine.read(sketch, "fractal")[..., :3].reshape(-1, 3).astype(np.float64)

@@ -259,14 +259,6 @@ def test_horizons_planes_and_the_sun_s_part(engine, diagram, column):
     assert result[3, 0] == pytest.approx(heights[5:51].min(), rel=1e-6)
 
 
-@pytest.mark.parametrize("elevation", [1.0, 12.0, 30.0, 60.0])
-def test_a_sun_is_whole_hidden_or_in_part(engine, diagram, elevation):
-    sketch = diagram("horizon", rough=0.0, step_up=0.5, viewpoint=20, elevation=elevation, diameter=10.0)
-    seen = engine.read(sketch, "diagram.angles")[0, 2, 2]
-    wall = math.degrees(math.atan(0.5 * RELIEF / (20 * SPACING)))
-    assert seen == pytest.approx(np.clip((elevation + 5 - wall) / 10, 0, 1), abs=1e-5)
-
-
 def test_terrain_is_below_its_heights_and_sky_above(any_engine, diagram):
     sketch = diagram("horizon", row=4, viewpoint=32, first=4, last=60)
     picture = any_engine.read(sketch, "diagram")[..., :3]

@@ -8,21 +8,14 @@ import pytest
 from playground.engine.engine import Engine
 
 from ..loading import load
-from .drawing import salt
+from ..sketch_texts import passes, use
+from ..truth.noise import bits, fade, gradient, lattice_seed, python_random, salt
 
-WHOLE = 2**32
-PASSES = """
-[[pass]]
-name = "height"
-use = "generation/endless"
-[[pass]]
-name = "colour"
-use = "texturing/endless_ground"
-[[pass]]
-name = "light"
-use = "lighting/soft_cone"
-set = { gain = 1.0, ambient = 0.2 }
-"""
+PASSES = passes(
+    height="generation/endless",
+    colour="texturing/endless_ground",
+    light=use("lighting/soft_cone", gain=1.0, ambient=0.2),
+)
 SPACING = 24.0
 
 
@@ -48,23 +41,6 @@ def inside(values, apron):
 # ── the truth ────────────────────────────────────────────────────────────────
 
 
-def mixed(key):
-    key = key % WHOLE
-    key = (key ^ (key // 2**15)) * 0x7FEB352D % WHOLE
-    return key - key % 2 + 1
-
-
-def gradient(x, y, seed):
-    number = mixed(x * 0x9E3779B1 + seed) * mixed(y * 0x85EBCA77 + seed) % WHOLE
-    angle = np.radians(67.5 if number // 2**29 % 2 else 22.5)
-    across, along = np.cos(angle), np.sin(angle)
-    return (-across if number >= 2**31 else across), (-along if number // 2**30 % 2 else along)
-
-
-def fade(t):
-    return 6 * t**5 - 15 * t**4 + 10 * t**3
-
-
 def blended(x, y, plane):
     """Blend planes over the four lattice points around a place, given in exact fractions (cell, share)."""
     (cx, dx), (cy, dy) = x, y
@@ -82,19 +58,10 @@ def shape_twin(node, hills=256, layers=3, persistence=0.4, seed=7):
         wide = max(hills // 2**k, 2)
         moved = (node[0] + k * (wide * 5 // 8), node[1] + k * (wide * 3 // 8))
         x, y = ((n // wide, n % wide / wide) for n in moved)
-        which = ((seed + salt("generation/endless/shape")) * 0x2545F491 + k * 0xC2B2AE3D) % WHOLE
-        total += persistence**k * 1.513 * blended(x, y, lambda a, b, s=which: gradient(a, b, s))
+        which = lattice_seed(seed + salt("generation/endless/shape"), k)
+        total += persistence**k * 1.513 * blended(x, y, lambda a, b, s=which: gradient(bits(a, b, s)))
         strengths += persistence**k
     return min(max(0.5 + 0.75 * total / strengths, 0.0), 1.0)
-
-
-def pcg(x, y, seed):
-    v = [(n * 1664525 + 1013904223) % WHOLE for n in (x, y, seed)]
-    for turn in range(2):
-        for i in range(3):
-            v[i] = (v[i] + v[(i + 1) % 3] * v[(i + 2) % 3]) % WHOLE
-        v = [n ^ (n >> 16) for n in v] if turn == 0 else v
-    return [(n >> 8) / 2.0**24 * 2 - 1 for n in v[:2]]
 
 
 def detail_twin(node, side=384, frequency=6, octaves=6, gain=0.45, seed=7):
@@ -103,11 +70,12 @@ def detail_twin(node, side=384, frequency=6, octaves=6, gain=0.45, seed=7):
         period = frequency * 2**k
         x, y = (n % side / side * period + k * shift for n, shift in zip(node, (0.618, 0.382), strict=True))
         x, y = ((int(np.floor(p)), p - np.floor(p)) for p in (x, y))
-        noise = blended(
-            x,
-            y,
-            lambda a, b, p=period, k=k: pcg(a % p, b % p, seed + salt("generation/endless/detail") + 101 * k),
-        )
+        key = seed + salt("generation/endless/detail") + 101 * k
+
+        def plane(a, b, p=period, key=key):
+            return [2 * python_random(a % p, b % p, key, part) - 1 for part in (0, 1)]
+
+        noise = blended(x, y, plane)
         total += gain**k * (1 - abs(noise)) ** 2
         strengths += gain**k
     return total / strengths
@@ -226,11 +194,6 @@ def test_tiny_parts_are_numbers(any_engine, part_of, size):
     assert np.isfinite(result).all()
     wide = part_of((3, 3), 4, 0, **{"height.apron": 500})  # more apron than texture
     assert np.isfinite(any_engine.read(wide, "height")).all()
-
-
-def test_another_seed_is_another_terrain(any_engine, part_of):
-    terrains = [any_engine.read(part_of((0, 0), **{"height.seed": s}), "height") for s in (7, 8)]
-    assert np.abs(terrains[0] - terrains[1]).mean() > 0.02
 
 
 # ── the ground ───────────────────────────────────────────────────────────────

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from playground.engine.engine import Engine
 from playground.engine.on_arrays import OnArrays
@@ -76,16 +75,6 @@ def test_without_a_brush_it_erodes_everywhere(any_engine: Engine):
     run, before = OnArrays(any_engine, "erosion/brush"), hills()
     result = run.run({"height": before}, spacing=SPACING, relief=1.0)
     assert (result["height"] != before).mean() > 0.5
-
-
-@pytest.mark.parametrize("axis", [0, 1])
-def test_a_mirrored_terrain_is_eroded_alike(any_engine: Engine, axis: int):
-    run, weight = OnArrays(any_engine, "erosion/brush"), brush()
-    after, _ = stamped(run, hills(), weight, 5)
-    other, _ = stamped(run, np.flip(hills(), axis).copy(), np.flip(weight, axis).copy(), 5)
-    change = after - hills()
-    # Rounding alone differs: what compilers regroup.
-    np.testing.assert_allclose(np.flip(other, axis), after, atol=1e-3 * np.abs(change).max())
 
 
 def test_hostile_parameters_leave_numbers(any_engine: Engine):

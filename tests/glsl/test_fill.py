@@ -183,15 +183,6 @@ def test_in_few_steps_it_is_too_high_by_a_part_of_the_fall(engine, make_sketch, 
     assert over.max() < FALL * np.hypot(*EXTENT)
 
 
-def test_without_the_fall_it_is_the_lowest_water_that_stands(engine, terrain):
-    """The classical fill, without any fall: never above the level, and below it by the fall at most."""
-    height, level = engine.read(terrain, "height").copy(), engine.read(terrain, "fill").copy()
-    still = flooded(height, SPACING, 0.0)
-    longest = height.size * np.hypot(*SPACING)
-    assert (level >= still).all()
-    assert (level - still).max() < FALL * longest
-
-
 @pytest.mark.parametrize("steps", [1, 7, 400])
 @pytest.mark.parametrize("flat_to", [0.0, 0.5, 1.0])
 def test_every_texel_drains_after_any_number_of_steps(engine, make_sketch, steps, flat_to):
@@ -202,14 +193,6 @@ def test_every_texel_drains_after_any_number_of_steps(engine, make_sketch, steps
     assert edge.ravel()[ends_of(receiver)].all(), "every way ends at an edge"
     inner = ~edge.ravel()
     assert (level[receiver.ravel()[inner]] < level[inner]).all()
-
-
-def test_turned_or_mirrored_terrain_is_filled_turned_or_mirrored(engine, terrain):
-    level = engine.read(terrain, "fill").copy()
-    for key, axes in (("turn", (0, 1)), ("mirror", (1,))):
-        result = engine.read(terrain.with_values({f"height.{key}": 1}), "fill")
-        # The way on which a flood begins is rounded once a doubling.
-        np.testing.assert_allclose(np.flip(result, axes), level, rtol=0, atol=2e-6)
 
 
 def test_hostile_scales_keep_their_ways(engine, make_sketch):

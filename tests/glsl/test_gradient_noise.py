@@ -1,122 +1,30 @@
-"""Gradient noise against noise made corner by corner in float64, from the same random bits."""
+"""Gradient noise and what is made of it, against noise made corner by corner in float64."""
 
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
 
-from playground.engine.engine import Engine
-
-from .drawing import salt
+from ..truth.noise import (
+    NOISE,
+    SHIFT,
+    WHOLE,
+    bits,
+    fade,
+    gradient,
+    lattice_seed,
+    perlin,
+    places,
+    salt,
+    signed,
+    sum_of_octaves,
+)
+from .conftest import BOTH_TEXTS
 
 RNG = np.random.default_rng(3)
-WHOLE = 2**32
-SHIFT = 0.618034  # of every octave, in its own cells, to the east
 SHAPES = ("plain", "ridged", "billow", "warped")
 BASES = ("Perlin", "simplex")
-
-
-# ── the truth ────────────────────────────────────────────────────────────────
-
-
-def mixed(key):
-    """Return one round of mixing, made odd: Python's remainder in place of overflow."""
-    key = key % WHOLE
-    key = (key ^ (key // 2**15)) * 0x7FEB352D % WHOLE
-    return key - key % 2 + 1
-
-
-def bits(x, y, seed):
-    """Return a lattice point's random bits, uint64 below 2^32."""
-    x, y = (np.asarray(a).astype(np.int64) % WHOLE for a in np.broadcast_arrays(x, y))
-    columns = mixed(x.astype(np.uint64) * np.uint64(0x9E3779B1) + np.uint64(seed % WHOLE))
-    rows = mixed(y.astype(np.uint64) * np.uint64(0x85EBCA77) + np.uint64(seed % WHOLE))
-    return columns * rows % WHOLE
-
-
-def gradient(number):
-    """Return the unit vector of some bits: 22.5 or 67.5 degrees, in the quarter that two more bits say."""
-    eighth = number // 2**29
-    angle = np.radians(np.where(eighth % 2 == 1, 67.5, 22.5))
-    return (
-        np.where(eighth >= 4, -1, 1) * np.cos(angle),
-        np.where(eighth // 2 % 2 == 1, -1, 1) * np.sin(angle),
-    )
-
-
-def fade(t):
-    return 6 * t**5 - 15 * t**4 + 10 * t**3
-
-
-def perlin(x, y, seed):
-    """Return Perlin noise as a sum over four corners of weight times plane."""
-    total = 0.0
-    for i, j in product((0, 1), repeat=2):
-        cx, cy = np.floor(x) + i, np.floor(y) + j
-        gx, gy = gradient(bits(cx, cy, seed))
-        dx, dy = x - cx, y - cy
-        total = total + fade(1 - abs(dx)) * fade(1 - abs(dy)) * (gx * dx + gy * dy)
-    return 1.513 * total
-
-
-def simplex(x, y, seed):
-    """Return simplex noise as a sum over all lattice points near enough, not three that are picked."""
-    skew, back = (np.sqrt(3) - 1) / 2, (3 - np.sqrt(3)) / 6
-    x, y = x * np.sqrt(2 / 3), y * np.sqrt(2 / 3)  # triangles of side 1
-    near_x, near_y = np.floor(x + (x + y) * skew), np.floor(y + (x + y) * skew)
-    total = 0.0
-    for i, j in product(range(-1, 3), repeat=2):
-        cx, cy = near_x + i, near_y + j
-        dx, dy = x - (cx - (cx + cy) * back), y - (cy - (cx + cy) * back)
-        gx, gy = gradient(bits(cx, cy, seed))
-        total = total + np.maximum(0.5 - dx**2 - dy**2, 0) ** 4 * (gx * dx + gy * dy)
-    return 100.0 * total
-
-
-NOISE = {"Perlin": perlin, "simplex": simplex}
-
-
-def terrain(
-    x, y, *, basis="Perlin", shape="plain", octaves=6, lacunarity=2.0, gain=0.5, seed=7, warp=0.4, texels
-):
-    """Return the sum of octaves at places in cells of the first octave."""
-    value = {"basis": basis, "lacunarity": lacunarity, "gain": gain, "octaves": octaves, "texels": texels}
-    if shape == "warped":
-        east, north = (terrain(x, y, seed=seed + more, **value) for more in (0x51ED270B, 0xA3DA4E16))
-        return terrain(x + warp * east, y + warp * north, seed=seed, **value)
-    total, before = np.zeros(np.broadcast(x, y).shape), None
-    for k in range(octaves):
-        frequency = lacunarity**k
-        visible = min(max(texels / frequency - 1, 0), 1)
-        which = (seed + salt("generation/gradient_noise")) * 0x2545F491 + k * 0xC2B2AE3D
-        noise = NOISE[basis](x * frequency + SHIFT, y * frequency, which)
-        if shape == "billow":
-            noise = 2 * abs(noise) - 1
-        elif shape == "ridged":
-            noise = (1 - abs(noise)) ** 2
-            noise = noise if before is None else noise * np.minimum(2 * before, 1)
-            before = noise
-        total = total + visible * gain**k * noise
-    return total
-
-
-def places(size, extent, frequency):
-    """Return each texel's place in cells, and the texels to a cell."""
-    spacing = np.array(extent, float) / np.maximum(np.array(size) - 1, 1)
-    cells = min(frequency / extent[0], 0.5 / spacing.max())
-    y, x = np.mgrid[0 : size[1], 0 : size[0]]
-    return x * spacing[0] * cells, y * spacing[1] * cells, 1 / (cells * spacing.max())
-
-
-@pytest.fixture
-def sketch_of(make_sketch):
-    def make(size=(33, 33), extent=1000.0, use="generation/gradient_noise/sum", **values):
-        text = "".join(f"{k} = {v!r}\n" for k, v in values.items())
-        return make_sketch(
-            f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{text}', size=list(size), extent=extent
-        )
-
-    return make
+SUM, DERIVATIVES = "generation/gradient_noise/sum", "generation/gradient_noise/derivatives"
 
 
 # ── the lattice ──────────────────────────────────────────────────────────────
@@ -136,7 +44,7 @@ def test_the_lattice_s_bits_are_python_s(on_gpu):
 def test_seeds_of_octaves_are_python_s_and_differ(on_gpu):
     seeds, octaves = (a.ravel() for a in np.mgrid[0:2000, 0:17])
     result = on_gpu("noise/lattice.glsl", "lattice_seed(s, k)", s=seeds.astype(np.uint32), k=octaves)
-    np.testing.assert_array_equal(result, (seeds * 0x2545F491 + octaves * 0xC2B2AE3D) % WHOLE)
+    np.testing.assert_array_equal(result, lattice_seed(seeds, octaves))
     assert len(np.unique(result)) == result.size
 
 
@@ -172,11 +80,10 @@ def test_random_bits_are_uniform_and_uncorrelated(seed):
 
 
 def test_seeds_and_octaves_know_nothing_of_each_other():
-    which = [seed * 0x2545F491 + k * 0xC2B2AE3D for seed in (0, 1, 2, 3, 100, 9999) for k in range(4)]
+    which = [lattice_seed(seed, k) for seed in (0, 1, 2, 3, 100, 9999) for k in range(4)]
     for of in (np.cos, np.sin):
         fields = np.stack([of(field(w, 128)).ravel() for w in which])
-        correlations = np.corrcoef(fields)[np.triu_indices(len(which), 1)]
-        assert np.abs(correlations).max() < 5 / 128
+        assert np.abs(np.corrcoef(fields)[np.triu_indices(len(which), 1)]).max() < 5 / 128
 
 
 def test_gradients_are_unit_vectors_in_eight_even_directions(on_gpu):
@@ -187,41 +94,29 @@ def test_gradients_are_unit_vectors_in_eight_even_directions(on_gpu):
     eighths, counts = np.unique(np.round((degrees - 22.5) / 45, 4), return_counts=True)
     np.testing.assert_array_equal(eighths, np.arange(8))
     assert np.abs(counts - 500).max() < 4 * np.sqrt(500)
-    np.testing.assert_allclose(np.hypot(*result.T), 1, atol=1e-7)
 
 
 # ── the noise ────────────────────────────────────────────────────────────────
 
-FILES = {"Perlin": "noise/gradient.glsl", "simplex": "noise/simplex.glsl"}
-FADES = ("quintic", "quintic_slope")
-CALL = {"Perlin": "perlin(p, s)", "simplex": "simplex(p, s)"}
-
-
-@pytest.fixture(scope="module")
-def some_places():
-    return np.random.default_rng(8).uniform(-60, 60, (4000, 2)).astype(np.float32)
+CALL = {
+    "Perlin": ("noise/gradient.glsl", "perlin(p, s)"),
+    "simplex": ("noise/simplex.glsl", "simplex(p, s)"),
+}
 
 
 @pytest.mark.parametrize("basis", BASES)
-def test_noise_is_the_sum_over_the_corners(on_gpu, some_places, basis):
-    result = on_gpu(FILES[basis], CALL[basis], p=some_places, s=np.uint32(5))
-    x, y = some_places.astype(float).T
-    truth = NOISE[basis](x, y, 5)
+def test_noise_is_the_sum_over_the_corners_and_its_slopes(on_gpu, basis):
+    at = np.random.default_rng(8).uniform(-60, 60, (4000, 2)).astype(np.float32)
+    result = on_gpu(*CALL[basis], p=at, s=np.uint32(5))
+    x, y = at.astype(float).T
+    of, step = NOISE[basis], 1e-5
+    truth = of(x, y, 5)
     # Sixty cells from the origin, a skewed place is known to 2e-6 of a cell.
     np.testing.assert_allclose(result[:, 0], truth, atol=3e-5 if basis == "simplex" else 2e-6)
     assert truth.std() > 0.2 and abs(truth.mean()) < 0.03
-
-
-@pytest.mark.parametrize("basis", BASES)
-def test_slopes_are_finite_differences(on_gpu, some_places, basis):
-    result = on_gpu(FILES[basis], CALL[basis], p=some_places, s=np.uint32(5))
-    x, y = some_places.astype(float).T
-    step = 1e-5
-    of = NOISE[basis]
     east = (of(x + step, y, 5) - of(x - step, y, 5)) / (2 * step)
     north = (of(x, y + step, 5) - of(x, y - step, 5)) / (2 * step)
-    np.testing.assert_allclose(result[:, 1], east, atol=3e-4)
-    np.testing.assert_allclose(result[:, 2], north, atol=3e-4)
+    np.testing.assert_allclose(result[:, 1:], np.stack([east, north], axis=1), atol=3e-4)
     assert min(east.std(), north.std()) > 0.8
 
 
@@ -243,13 +138,17 @@ def test_noise_reaches_far_and_never_past_1(basis):
     assert 0.99 < total.max() < 1
 
 
-def test_simplex_noise_is_on_triangles_of_side_1(on_gpu):
-    """At a lattice point only its own plane is there: noise 0, and the slope of one gradient."""
+def test_at_a_lattice_point_only_its_own_plane_is_there(on_gpu):
+    """Noise 0, and the slope of one gradient; simplex noise is on triangles of side 1."""
     side = np.array([np.cos(np.radians(15)), -np.sin(np.radians(15))])  # 60 degrees from the diagonal
-    points = [i * side + j * side[::-1] for i, j in RNG.integers(-30, 30, (200, 2))]
-    result = on_gpu("noise/simplex.glsl", "simplex(p, 3u)", p=np.array(points, np.float32))
-    np.testing.assert_allclose(result[:, 0], 0, atol=3e-5)
-    np.testing.assert_allclose(np.hypot(result[:, 1], result[:, 2]), 100 * 0.5**4 * np.sqrt(2 / 3), rtol=1e-4)
+    skewed = [i * side + j * side[::-1] for i, j in RNG.integers(-30, 30, (200, 2))]
+    for basis, points, off, steep in (
+        ("Perlin", RNG.integers(-100, 100, (200, 2)), 0, 1.513),
+        ("simplex", np.array(skewed), 3e-5, 100 * 0.5**4 * np.sqrt(2 / 3)),
+    ):
+        result = on_gpu(*CALL[basis], p=points.astype(np.float32), s=np.uint32(3))
+        np.testing.assert_allclose(result[:, 0], 0, atol=off)
+        np.testing.assert_allclose(np.hypot(*result[:, 1:].T), steep, rtol=1e-6 if off == 0 else 1e-4)
 
 
 def test_the_fade_and_its_slope(on_gpu):
@@ -257,188 +156,258 @@ def test_the_fade_and_its_slope(on_gpu):
     t = np.linspace(0, 1, 513, dtype=np.float32)
     for vector in (False, True):
         position = np.stack([t, t[::-1]], axis=1) if vector else t
-        fade, slope = (on_gpu("noise/fade.glsl", f"{name}(t)", t=position) for name in FADES)
-        np.testing.assert_allclose(fade + fade[::-1], 1, atol=1e-6)
-        assert np.abs(slope[[0, -1]]).max() == 0 and np.abs(fade[[0, -1]]).max() == 1
+        result, slope = (
+            on_gpu("noise/fade.glsl", f"{name}(t)", t=position) for name in ("quintic", "quintic_slope")
+        )
+        np.testing.assert_allclose(result, fade(position), atol=1e-6)
+        assert np.abs(slope[[0, -1]]).max() == 0 and np.abs(result[[0, -1]]).max() == 1
         middle = (slope[1:] + slope[:-1]) / 2
-        np.testing.assert_allclose(np.abs(np.diff(fade, axis=0)) * 512, middle, atol=2e-4)
+        np.testing.assert_allclose(np.abs(np.diff(result, axis=0)) * 512, middle, atol=2e-4)
 
 
-def test_perlin_noise_is_zero_where_the_lattice_is(on_gpu):
-    points = RNG.integers(-100, 100, (200, 2)).astype(np.float32)
-    result = on_gpu("noise/gradient.glsl", "perlin(p, 3u)", p=points)
-    np.testing.assert_array_equal(result[:, 0], 0)
-    np.testing.assert_allclose(np.hypot(result[:, 1], result[:, 2]), 1.513, rtol=1e-6)
-
-
-def test_no_direction_is_drawn(any_engine, sketch_of):
+def test_no_direction_is_drawn(any_engine, single):
     """Slopes are as steep along the axes as along the diagonals, and so are the steepest."""
     along = {0.0: [], 45.0: [], 90.0: [], 135.0: []}
     for seed in range(12):
-        sketch = sketch_of((129, 129), use="generation/gradient_noise/derivatives", seed=seed, octaves=3)
-        east, north = np.moveaxis(any_engine.read(sketch, "terrain").astype(float), -1, 0)
+        slopes = any_engine.read(single(DERIVATIVES, 129, seed=seed, octaves=3), "terrain").astype(float)
         for degrees, result in along.items():
-            result.append(east * np.cos(np.radians(degrees)) + north * np.sin(np.radians(degrees)))
+            result.append(slopes @ [np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
     for power, bound in ((2, 0.04), (4, 0.12)):
         moments = np.array([(np.array(v) ** power).mean() for v in along.values()])
         assert np.abs(moments / moments.mean() - 1).max() < bound
 
 
-# ── the terrain ─────────────────────────────────────────────────────────────────
+# ── the terrain ──────────────────────────────────────────────────────────────
 
 
+@BOTH_TEXTS
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("basis", BASES)
-def test_it_is_the_sum_of_its_octaves(engine, sketch_of, basis, shape):
+def test_it_is_the_sum_of_its_octaves(engine, single, basis, shape):
     values = {"basis": basis, "shape": shape, "octaves": 4, "lacunarity": 1.9, "gain": 0.6, "seed": 11}
-    result = engine.read(sketch_of((65, 40), [900.0, 500.0], frequency=3.0, **values), "terrain")
+    result = engine.read(single(SUM, (65, 40), (900.0, 500.0), frequency=3.0, **values), "terrain")
     x, y, texels = places((65, 40), (900.0, 500.0), 3.0)
-    np.testing.assert_allclose(result, terrain(x, y, texels=texels, **values), atol=1e-4)
+    np.testing.assert_allclose(result, sum_of_octaves(x, y, texels=texels, **values), atol=1e-4)
     assert result.std() > 0.1
 
 
+@BOTH_TEXTS
 @pytest.mark.parametrize("frequency", [0.25, 1.0, 7.3, 32.0, 1024.0])
 @pytest.mark.parametrize("octaves", [1, 2, 3, 16])
-def test_every_frequency_even_above_the_size(engine, sketch_of, frequency, octaves):
-    result = engine.read(sketch_of(frequency=frequency, octaves=octaves, gain=0.9), "terrain")
+def test_every_frequency_even_above_the_size(engine, single, frequency, octaves):
+    result = engine.read(single(SUM, frequency=frequency, octaves=octaves, gain=0.9), "terrain")
     x, y, texels = places((33, 33), (1000.0, 1000.0), frequency)
-    np.testing.assert_allclose(result, terrain(x, y, texels=texels, octaves=octaves, gain=0.9), atol=3e-5)
+    truth = sum_of_octaves(x, y, texels=texels, octaves=octaves, gain=0.9)
+    np.testing.assert_allclose(result, truth, atol=3e-5)
     assert result.std() > 0.02
+
+
+@pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 9), (9, 1), (2, 300)], ids=str)
+def test_tiny_terrains(engine, single, size):
+    extent = (1000.0, 1000.0 * max(size[1] - 1, 1) / max(size[0] - 1, 1))
+    x, y, texels = places(size, extent, 4.0)
+    result = engine.read(single(SUM, size, extent), "terrain")
+    np.testing.assert_allclose(result, sum_of_octaves(x, y, texels=texels), atol=2e-4)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("basis", BASES)
-def test_derivatives_are_finite_differences(engine, sketch_of, basis, shape):
+def test_derivatives_are_finite_differences(engine, single, basis, shape):
     values = {"basis": basis, "shape": shape, "octaves": 4, "gain": 0.5, "seed": 4}
-    sketch = sketch_of((65, 40), [900.0, 500.0], use="generation/gradient_noise/derivatives", **values)
-    result = engine.read(sketch, "terrain")
+    result = engine.read(single(DERIVATIVES, (65, 40), (900.0, 500.0), **values), "terrain")
     x, y, texels = places((65, 40), (900.0, 500.0), 4.0)
     step, scale = 1e-6, 4.0 / 900.0
     for axis, (ex, ey) in enumerate(((step, 0.0), (0.0, step))):
-        high, low = (terrain(x + way * ex, y + way * ey, texels=texels, **values) for way in (1, -1))
+        high, low = (sum_of_octaves(x + way * ex, y + way * ey, texels=texels, **values) for way in (1, -1))
         slope = (high - low) / (2 * step) * scale
         # A difference across a crease is not the slope on either side of it.
         assert (np.abs(result[..., axis] - slope) < 2e-3 * np.abs(slope).max()).mean() > 0.995
         assert slope.std() > 1e-3
 
 
-def test_derivatives_are_what_texels_of_the_sum_differ_by(any_engine, sketch_of):
-    size, metres = 1025, 1000.0 / 1024
-    heights = any_engine.read(sketch_of((size, size), octaves=3), "terrain").astype(float)
-    sketch = sketch_of((size, size), use="generation/gradient_noise/derivatives", octaves=3)
-    slopes = any_engine.read(sketch, "terrain").astype(float)
-    north, east = np.gradient(heights, metres)
-    inner = np.s_[1:-1, 1:-1]
-    for result, truth in ((slopes[..., 0], east), (slopes[..., 1], north)):
-        assert np.abs(result - truth)[inner].max() < 0.01 * np.abs(truth).max()
-
-
 @pytest.mark.parametrize(
     "size, extent", [((257, 130), 1000.0), ((70, 193), [300.0, 900.0]), ((130, 130), [900.0, 300.0])], ids=str
 )
-def test_walking_the_columns_gives_the_kernel_s_terrain(ctx, sketch_of, size, extent):
+def test_walking_the_columns_gives_the_kernel_s_terrain(both_texts, single, size, extent):
     """Polynomials along columns, against the kernel that works out each texel by itself."""
-    if ctx.version_code < 430:
-        pytest.skip("this context has no compute shaders")
-    with Engine(ctx, driver="fragment") as by_texels, Engine(ctx) as by_columns:
-        for octaves, lacunarity, gain in product((0, 1, 2, 3, 16), (1.1, 2.0, 2.7), (0.5, 1.0)):
-            values = {"octaves": octaves, "lacunarity": lacunarity, "gain": gain}
-            sketch = sketch_of(size, extent, **values)
-            first, other = (e.read(sketch, "terrain") for e in (by_texels, by_columns))
-            assert octaves == 0 or (first != other).any(), "the same way was gone twice"
-            np.testing.assert_allclose(other, first, atol=1e-4 if gain == 1.0 else 1e-5, err_msg=str(values))
+    for octaves, lacunarity, gain in product((0, 1, 2, 3, 16), (1.1, 2.0, 2.7), (0.5, 1.0)):
+        values = {"octaves": octaves, "lacunarity": lacunarity, "gain": gain}
+        sketch = single(SUM, size, extent, **values)
+        first, other = (e.read(sketch, "terrain") for e in both_texts)
+        assert octaves == 0 or (first != other).any(), "the same way was gone twice"
+        np.testing.assert_allclose(other, first, atol=1e-4 if gain == 1.0 else 1e-5, err_msg=str(values))
 
 
-def test_the_same_terrain_at_another_size_looks_the_same(engine, sketch_of):
-    small, large = (engine.read(sketch_of((n, n), octaves=3), "terrain") for n in (65, 129))
-    np.testing.assert_allclose(large[::2, ::2], small, atol=1e-5)
+# ── fractional Brownian motion ───────────────────────────────────────────────
+
+CURVES = "generation/fbm/curve"
+HURST = pytest.mark.parametrize("hurst", [0.2, 0.4, 0.6, 0.8])
 
 
-def test_a_smaller_size_lacks_detail_and_gains_no_noise(any_engine, sketch_of):
-    """At 65 texels, five of eight octaves are visible: the others are smoothed away, not sampled."""
-    large = any_engine.read(sketch_of((513, 513), octaves=8, gain=0.7), "terrain").astype(float)
-    small = any_engine.read(sketch_of((65, 65), octaves=8, gain=0.7), "terrain").astype(float)
-    sampled = large[::8, ::8]
-    assert np.corrcoef(small.ravel(), sampled.ravel())[0, 1] > 0.97
-
-    def finest(values):
-        power = np.abs(np.fft.fft2(values[:-1, :-1] * np.outer(np.hanning(64), np.hanning(64)))) ** 2
-        fy, fx = np.meshgrid(np.fft.fftfreq(64, 1 / 64), np.fft.fftfreq(64, 1 / 64), indexing="ij")
-        return power[np.hypot(fx, fy) > 24].mean()
-
-    assert finest(small) < 0.5 * finest(sampled)
-
-
-def test_octaves_too_fine_for_the_texels_add_nothing(engine, sketch_of):
-    terrains = [engine.read(sketch_of((33, 33), octaves=n, gain=1.0), "terrain") for n in (3, 4, 16)]
-    np.testing.assert_array_equal(terrains[0], terrains[1])
-    np.testing.assert_array_equal(terrains[0], terrains[2])
+@BOTH_TEXTS
+@pytest.mark.parametrize(
+    ("hurst", "frequency", "lacunarity", "octaves"), [(0.8, 2.0, 2.0, 16), (0.3, 3.0, 2.5, 4)]
+)
+def test_octaves_are_added(engine, single, hurst, frequency, lacunarity, octaves):
+    """Places are off by a rounding, 2^-24 of them an octave; noise rises by less than 4 a cell."""
+    size, extent, gain = (129, 65), (1000.0, 500.0), lacunarity**-hurst
+    x, y, texels = places(size, extent, frequency)
+    given = {"lacunarity": lacunarity, "octaves": octaves}
+    expected = sum_of_octaves(x, y, texels=texels, gain=gain, name="generation/fbm", **given)
+    shown = [k for k in range(octaves) if texels > lacunarity**k]
+    bound = sum(gain**k * (4 * (k + 4) * frequency * lacunarity**k + 16) * 2.0**-24 for k in shown)
+    sketch = single("generation/fbm/sum", size, extent, hurst=hurst, frequency=frequency, **given)
+    assert np.abs(engine.read(sketch, "terrain") - expected).max() <= bound
 
 
-def test_hills_stay_round_on_terrain_that_is_not_square(engine, sketch_of):
-    square = engine.read(sketch_of((65, 65), 1000.0), "terrain")
-    half = engine.read(sketch_of((65, 33), [1000.0, 500.0]), "terrain")
-    np.testing.assert_allclose(half, square[:33], atol=2e-6)
-    # Texels twice as far apart to the north show the same hills too.
-    coarse = engine.read(sketch_of((65, 33), [1000.0, 1000.0], octaves=2), "terrain")
-    fine = engine.read(sketch_of((65, 65), [1000.0, 1000.0], octaves=2), "terrain")
-    np.testing.assert_allclose(coarse, fine[::2], atol=2e-6)
+def slope_of_bins(frequency, power, low, high):
+    """Return how power falls with frequency: the line through means over even steps of its logarithm."""
+    edges = np.geomspace(low, high, 17)
+    means = [power[(frequency >= a) & (frequency < b)].mean() for a, b in pairwise(edges)]
+    return np.polyfit(np.log(np.sqrt(edges[1:] * edges[:-1])), np.log(means), 1)[0]
 
 
-def test_no_octaves_are_flat_terrain(engine, sketch_of):
-    for basis, shape in product(BASES, SHAPES):
-        sketch = sketch_of(octaves=0, basis=basis, shape=shape)
-        np.testing.assert_array_equal(engine.read(sketch, "terrain"), 0)
-    sketch = sketch_of(octaves=0, use="generation/gradient_noise")
-    np.testing.assert_array_equal(engine.read(sketch, "terrain"), 0)
+@HURST
+@pytest.mark.parametrize("seed", [7, 3])
+def test_power_falls_as_fractional_brownian_motion_s(any_engine, single, hurst, seed):
+    """Radial power spectrum f^-(2H + 2): 1024 texels a side, 8 octaves from frequency 4, a Hann window."""
+    n = 1024
+    terrain = any_engine.read(single("generation/fbm", n, hurst=hurst, seed=seed), "terrain").astype(float)
+    window = np.hanning(n)
+    power = np.abs(np.fft.fft2((terrain - terrain.mean()) * np.outer(window, window))) ** 2
+    along = np.fft.fftfreq(n, 1 / n)
+    slope = slope_of_bins(np.hypot(along[None], along[:, None]), power, 8, 256)
+    assert abs(slope + 2 * hurst + 2) < 0.2
 
 
-@pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 9), (9, 1), (2, 300)], ids=str)
-def test_tiny_terrains_are_numbers(engine, sketch_of, size):
-    extent = (1000.0, 1000.0 * max(size[1] - 1, 1) / max(size[0] - 1, 1))
-    result = engine.read(sketch_of(size, list(extent)), "terrain")
-    x, y, texels = places(size, extent, 4.0)
-    np.testing.assert_allclose(result, terrain(x, y, texels=texels), atol=2e-4)
+def test_it_has_eight_octaves_from_four_on(any_engine, single):
+    said = single("generation/fbm", 257, octaves=8, frequency=4.0, lacunarity=2.0, hurst=0.8)
+    usual = any_engine.read(single("generation/fbm", 257), "terrain")
+    np.testing.assert_array_equal(usual, any_engine.read(said, "terrain"))
 
 
-def test_it_is_normalised_by_default_and_not_where_that_is_off(engine, sketch_of):
-    use = "generation/gradient_noise"
-    heights = engine.read(sketch_of(use=use), "terrain")
-    assert heights.min() == 0 and heights.max() == 1
-    sketch = sketch_of(use=use, normalise="none")
-    np.testing.assert_array_equal(engine.read(sketch, "terrain"), engine.read(sketch, "terrain.sum"))
+def curve(n, line, hurst, octaves, frequency, seed):
+    """Return one row of octaves of noise along a line."""
+    nodes = max(n - 1, 1)
+    row, squares = np.zeros(n), 0.0
+    for k in range(octaves):
+        cells = min(frequency, nodes / 2) * 2**k
+        weight = 2.0 ** (-hurst * k) * min(max(nodes / cells - 1, 0), 1)
+        squares += weight**2
+        position = np.arange(n) * cells / nodes + SHIFT
+        cell = np.floor(position)
+        t = position - cell
+        which = lattice_seed(seed + salt(CURVES), k)
+        low, high = (signed(bits(cell + i, line, which)) * (t - i) for i in (0, 1))
+        row += weight * (low * (1 - fade(t)) + high * fade(t))
+    return row / (0.140695 * np.sqrt(squares)) if squares else row
 
 
-def test_seeds_are_terrains_of_their_own(any_engine, sketch_of):
-    terrains = np.stack(
-        [
-            any_engine.read(sketch_of((257, 257), frequency=64.0, octaves=1, seed=s), "terrain").ravel()
-            for s in range(6)
-        ]
+@pytest.mark.parametrize("size", [(65, 6), (40, 2), (1, 3), (2, 5)], ids=str)
+def test_curves_are_octaves_of_noise_along_a_line(engine, single, size):
+    exponents = (0.9, 0.5, 0.4, 0.1)
+    for octaves in (0, 5):
+        given = {"hurst": exponents, "hurst_last": 0.7, "octaves": octaves, "frequency": 3.0, "seed": 9}
+        result = engine.read(single(CURVES, size, **given), "terrain")
+        truth = [curve(size[0], r, (*exponents, 0.7, 0.7)[r], octaves, 3.0, 9) for r in range(size[1])]
+        np.testing.assert_allclose(result, truth, atol=3e-5 if octaves else 0)
+
+
+@HURST
+def test_curves_have_the_spectrum_and_deviation_of_the_motion(any_engine, single, hurst):
+    """Power spectrum f^-(2H + 1), the mean over 48 curves; heights t apart differ by t^H; deviation 1."""
+    sketch = single(CURVES, (4096, 48), hurst=(hurst,) * 4, hurst_last=hurst, octaves=12)
+    rows = any_engine.read(sketch, "terrain").astype(float)
+    windowed = (rows - rows.mean(axis=1, keepdims=True)) * np.hanning(4096)
+    power = (np.abs(np.fft.rfft(windowed)) ** 2).mean(axis=0)
+    assert abs(slope_of_bins(np.arange(power.size), power, 8, 512) + 2 * hurst + 1) < 0.1
+    assert abs(rows.std() - 1) < 0.06
+
+
+def test_curves_know_nothing_of_each_other(any_engine, single):
+    values = {"hurst": (0.0,) * 4, "hurst_last": 0.0, "frequency": 64.0, "octaves": 5}
+    rows, other = (
+        any_engine.read(single(CURVES, (2049, 12), seed=s, **values), "terrain").astype(float) for s in (7, 8)
     )
-    np.testing.assert_array_equal(
-        terrains[3],
-        any_engine.read(sketch_of((257, 257), frequency=64.0, octaves=1, seed=3), "terrain").ravel(),
-    )
-    correlations = np.corrcoef(terrains.astype(float))[np.triu_indices(6, 1)]
-    assert np.abs(correlations).max() < 4 / 64
+    assert np.abs(np.corrcoef(rows)[np.triu_indices(12, 1)]).max() < 0.25
+    assert abs(np.corrcoef(rows[0], other[0])[0, 1]) < 0.25
 
 
-def test_ridges_point_up_and_billows_down(any_engine, sketch_of):
-    """Creases are where the terrain bends most: at ridges downwards, between billows upwards."""
+# ── ridges and warping, the lesson's kernels ─────────────────────────────────
 
-    def bend(shape):
-        h = any_engine.read(sketch_of((257, 257), shape=shape, octaves=2), "terrain").astype(float)
-        laplacian = h[1:-1, 2:] + h[1:-1, :-2] + h[2:, 1:-1] + h[:-2, 1:-1] - 4 * h[1:-1, 1:-1]
-        return ((laplacian - laplacian.mean()) ** 3).mean() / laplacian.std() ** 3
-
-    assert bend("ridged") < -1.5
-    assert bend("billow") > 1.5
-    assert abs(bend("plain")) < 0.5
+RIDGES, WARPING = "generation/gradient_noise/ridges", "generation/gradient_noise/warping"
+SIZE, EXTENT, CELLS = (65, 33), (1000.0, 500.0), 3.0
 
 
-def test_warping_bends_the_plain_terrain(engine, sketch_of):
-    plain = engine.read(sketch_of(octaves=3), "terrain")
-    unbent = engine.read(sketch_of(octaves=3, shape="warped", warp=0.0), "terrain")
-    np.testing.assert_allclose(unbent, plain, atol=1e-6)
-    assert np.abs(engine.read(sketch_of(octaves=3, shape="warped", warp=1.0), "terrain") - plain).max() > 0.3
+@pytest.fixture
+def read(any_engine, single):
+    """Give a texture of one pass, float64."""
+
+    def of(use, output="", size=SIZE, extent=EXTENT, **values):
+        return any_engine.read(single(use, size, extent, **values), f"terrain{output}").astype(np.float64)
+
+    return of
+
+
+def octaves(x, y, count, gain, more=0, fold=lambda noise: noise):
+    seeds = [lattice_seed(7 + more + salt("generation/gradient_noise"), k) for k in range(count)]
+    return sum(gain**k * fold(perlin(x * 2**k + SHIFT, y * 2**k, seed)) for k, seed in enumerate(seeds))
+
+
+@pytest.mark.parametrize(
+    "fold, truth",
+    [
+        ("none", lambda noise: noise),
+        ("valleys", lambda noise: np.maximum(noise, -noise)),
+        ("ridges", lambda noise: np.minimum(1 - noise, 1 + noise)),
+        ("sharp ridges", lambda noise: 1 - 2 * abs(noise) + noise**2),
+    ],
+)
+def test_each_octave_is_folded_and_added(read, fold, truth):
+    value = {"fold": fold, "weighed": False, "octaves": 3, "frequency": CELLS, "gain": 0.6}
+    expected = octaves(*places(SIZE, EXTENT, CELLS)[:2], 3, 0.6, fold=truth)
+    np.testing.assert_allclose(read(RIDGES, **value), expected, atol=2e-5)
+    assert expected.std() > 0.1
+
+
+@pytest.mark.parametrize(
+    ("shape", "use", "same", "other", "bound"),
+    [
+        ("ridged", (RIDGES, ""), {}, {"weighed": False}, 1e-5),
+        ("warped", (WARPING, ":height"), {"bends": 4, "warp": 0.7}, {"bends": 1}, 3e-5),
+    ],
+)
+def test_the_lesson_s_kernels_are_the_technique_s_shapes(read, shape, use, same, other, bound):
+    """Four octaves of 3 cells on 65 texels: the last one's cells are wider than two texels."""
+    value = {"octaves": 4, "frequency": CELLS, "gain": 0.45, "seed": 3}
+    technique = read(SUM, shape=shape, **value, **{k: v for k, v in same.items() if k == "warp"})
+    np.testing.assert_allclose(read(*use, **value, **same), technique, atol=bound)
+    assert abs(read(*use, **value, **(same | other)) - technique).max() > 0.05
+
+
+@pytest.mark.parametrize("warp", [0.0, 0.3, 1.5])
+def test_the_stretch_is_the_area_of_a_small_square_that_is_moved(read, warp):
+    """By differences of the moved places, and its sign by the way that their corners run round."""
+    result = read(WARPING, ":stretch", warp=warp, bends=2, gain=0.5, frequency=CELLS)
+    x, y, _ = places(SIZE, EXTENT, CELLS)
+    step = 1e-5
+
+    def moved(x, y):
+        by = (octaves(x, y, 2, 0.5, more) for more in (0x51ED270B, 0xA3DA4E16))
+        return np.stack([at + warp * way for at, way in zip((x, y), by, strict=True)])
+
+    east = moved(x + step, y) - moved(x - step, y)
+    north = moved(x, y + step) - moved(x, y - step)
+    area = (east[0] * north[1] - east[1] * north[0]) / (2 * step) ** 2
+    np.testing.assert_allclose(result, area, atol=2e-4 * max(abs(area).max(), 1))
+    if warp == 1.5:
+        assert (area < 0).any(), "a strong warp folds the map"
+
+
+def test_the_board_shows_where_places_go(read):
+    value = {"squares": True, "frequency": 4.0, "size": (65, 65), "extent": (1000.0, 1000.0)}
+    board = read(WARPING, ":height", warp=0.0, **value)
+    np.testing.assert_array_equal(np.unique(board), [0, 1])
+    y, x = np.mgrid[0:65, 0:65] // 4  # sixteen squares a side
+    np.testing.assert_array_equal(board[:-1, :-1], ((x + y) % 2)[:-1, :-1])
+    assert (read(WARPING, ":height", warp=0.5, **value) != board).mean() > 0.2

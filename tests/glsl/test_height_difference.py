@@ -73,23 +73,6 @@ def test_plane_rising_toward_sun_loses_light_linearly_with_slope(engine, lit):
         np.testing.assert_array_equal(light[:, -1, 3], 1.0)
 
 
-def test_slope_away_from_sun_is_as_bright_as_level_ground(engine, lit):
-    light = engine.read(lit(rise=(0.0, -0.5), sun=(0.0, 5.0)), "light")
-    np.testing.assert_array_equal(light[..., 3], 1.0)
-
-
-def test_a_sun_below_the_horizon_lights_nothing_but_the_sky_does(engine, lit):
-    light = engine.read(lit(rough=0.1, sun=(10.0, -2.0), ambient=0.25), "light")
-    np.testing.assert_array_equal(light[..., 3], 0.0)
-    np.testing.assert_allclose(light[..., :3], 0.25, atol=HALF)
-
-
-@pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 5)])
-def test_the_smallest_terrains_are_bright_or_numbers_at_least(engine, lit, size):
-    light = engine.read(lit(size=size, rough=1.0, sun=(77.0, 30.0)), "light")
-    assert np.isfinite(light).all() and light.min() >= 0
-
-
 def test_gain_and_colours_are_multiplied_in(engine, lit):
     colours = {"sun_colour": (0.5, 0.25, 1.0), "sky_colour": (1.0, 0.5, 0.0)}
     light = engine.read(lit(gain=2.0, ambient=0.5, **colours), "light")

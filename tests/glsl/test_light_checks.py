@@ -250,17 +250,6 @@ def test_cylinder_on_flat_terrain_is_half_lit_everywhere(light, elevation):
     np.testing.assert_allclose(result[..., 0], np.sin(np.radians(elevation)) / 2, rtol=2 * HALF)
 
 
-@pytest.mark.parametrize("delta_r", [0.5, 1.5])
-@pytest.mark.parametrize("elevation", [5.0, 25.0, 60.0])
-@pytest.mark.parametrize("form", ["march", "sweep"])
-def test_cone_wider_than_sun_elevation_is_cut_by_flat_ground(light, form, elevation, delta_r):
-    """V = (1 + L_z / delta_r) / 2, but for texels whose first step leaves the terrain."""
-    method = Method("cone", "soft_cone", {"gain": 1.0, "delta_r": delta_r, "form": form})
-    result = light(method, flat(), (250, elevation))[1:-1, 1:-1, 3]
-    truth = min((1 + np.sin(np.radians(elevation)) / delta_r) / 2, 1)
-    np.testing.assert_allclose(result, truth, rtol=2e-3)
-
-
 @pytest.mark.parametrize("sun", [(250, 5), (20, 12), (90, 20)], ids=str)
 def test_a_cone_tends_to_the_ray(light, sun):
     ray = light(Method("ray", "ray_cast", {"gain": 1.0}), rough(), sun)[..., 3]

@@ -9,10 +9,9 @@ import pytest
 
 from playground.sketch.model import Camera
 
-from .test_gradient_noise import bits, fade, mixed, perlin
+from ..truth.noise import lattice_seed, perlin, solid
 
 RNG = np.random.default_rng(18)
-WHOLE = 2**32
 RUNGS, COARSEST = 13, 64.0
 FINE = "PixelOnGround(vec2(1e-4, 0.0), 1e-4, 1e-4)"
 GRASS, STONES, ROCK = np.eye(3, dtype=np.float32)
@@ -20,26 +19,7 @@ FOLDED = 0.26663  # mean of the plane's noise without its sign
 TURN = np.array([[0.8, -0.6], [0.6, 0.8]])
 
 
-def lattice_seed(seed, which):
-    return (seed * 0x2545F491 + which * 0xC2B2AE3D) % WHOLE
-
-
 # ── noise in space ───────────────────────────────────────────────────────────
-
-
-def solid(position, seed):
-    """Return noise of space as a sum over eight corners of weight times plane."""
-    whole = np.floor(position)
-    total = 0.0
-    for corner in product((0, 1), repeat=3):
-        at = whole + corner
-        layers = (at[..., 2].astype(np.int64) % WHOLE).astype(np.uint64)
-        layers = mixed(layers * np.uint64(0xC2B2AE3D) + np.uint64(seed % WHOLE))
-        number = bits(at[..., 0], at[..., 1], seed) * layers % WHOLE
-        signs = np.stack([1.0 - 2.0 * (number // 2 ** (31 - k) % 2) for k in range(3)], axis=-1)
-        way = position - at
-        total = total + np.prod(fade(1 - abs(way)), axis=-1) * (signs * way).sum(axis=-1)
-    return total * 2 / 3
 
 
 @pytest.mark.parametrize("seed", [0, 4711])

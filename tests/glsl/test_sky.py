@@ -41,10 +41,6 @@ def plane(angle, towards=90.0, n=33, spacing=(20.0, 20.0)):
     return Land((x * np.sin(a) + y * np.cos(a)) * np.tan(np.radians(angle)), spacing, f"plane {angle}")
 
 
-def middle(values):
-    return values[values.shape[0] // 2, values.shape[1] // 2]
-
-
 def rms(values):
     return float(np.sqrt((values**2).mean()))
 
@@ -234,26 +230,6 @@ def test_the_table_and_the_formula_agree(read):
     assert formula.min() < 0.8
 
 
-def test_mirrored_terrain_has_a_mirrored_sky(read):
-    """Sectors that began at the measured directions would turn the sky by half a sector."""
-    terrain = Land(real(49).heights[:41] * 3, (74.0, 93.0))
-    mirrored = Land(terrain.heights[:, ::-1].copy(), terrain.spacing)
-    for way in ("by the table", "by the formula"):
-        straight, across = (read(terrain, "horizon_sky", "k", summed=way) for terrain in (terrain, mirrored))
-        np.testing.assert_allclose(across[:, ::-1], straight, atol=1e-3)
-
-
-def test_lifting_the_terrain_leaves_the_sky(read):
-    terrain = real(33)
-    plain = read(terrain, "horizon_sky", "factor")
-    # A needle far below everything lifts all else over height 0.
-    low = terrain.heights.copy()
-    low[0, 0] -= 3000
-    np.testing.assert_allclose(
-        read(Land(low, terrain.spacing), "horizon_sky", "factor")[8:, 8:], plain[8:, 8:], atol=3e-3
-    )
-
-
 # Ground
 
 
@@ -335,18 +311,6 @@ def test_patches_add_up_to_the_sky(read, split):
     np.testing.assert_allclose(even[..., :3], factor[..., :3], atol=3e-3)
 
 
-def test_slopes_see_the_patches_that_they_face(read):
-    black = [0.0, 0.0, 0.0]
-    for quarter, azimuth in (("north", 0.0), ("east", 90.0), ("south", 180.0), ("west", 270.0)):
-        terrain = plane(40.0, azimuth + 180.0)  # it falls towards the quarter
-        colours = dict.fromkeys(("overhead", "north", "east", "south", "west"), black) | {
-            quarter: [1.0, 1.0, 1.0]
-        }
-        seen = middle(read(terrain, "sky_patches", "factor", ground=black, **colours))[0]
-        facing_away = middle(read(plane(40.0, azimuth), "sky_patches", "factor", ground=black, **colours))[0]
-        assert seen > 0.25 and facing_away < 0.02
-
-
 # Interreflection
 
 
@@ -372,23 +336,3 @@ def test_another_sun_sums_no_sky_anew(ctx, kept, tmp_path):
     kept.read(sketch, "under_test")
     kept.read(sketch.with_values({"light.sun": (100, 30), "under_test.ambient": 0.2}), "under_test")
     assert kept.record.ran == ["light", "under_test.add"]
-
-
-@pytest.mark.parametrize("use", ["horizon_sky", "sky_patches", "interreflection"])
-@pytest.mark.parametrize("shape", [(2, 2), (2, 9), (9, 2)], ids=str)
-def test_tiny_terrains(read, use, shape):
-    terrain = Land(np.random.default_rng(1).random(shape) * 40, (10.0, 10.0))
-    passes = '[[pass]]\nname = "light"\nuse = "lighting/l_dot_n"\n' if use == "interreflection" else ""
-    light = read(terrain, use, "light", passes=passes)
-    assert light.min() >= 0
-
-
-def test_walls_and_needles_give_numbers(read):
-    heights = np.zeros((25, 25))
-    heights[:, 12] = 1e6
-    heights[4, 4] = 1e7
-    terrain = Land(heights, (1.0, 1.0))
-    k, factor = read(terrain, "horizon_sky", "k", "factor", ground=[1.0, 1.0, 1.0])
-    assert 0 <= k.min() and k.max() <= 1 and factor.max() <= 1.01
-    low, high = read(terrain, "sky_patches", "low", "high")
-    assert low.min() >= 0 and high.min() >= 0

@@ -156,15 +156,6 @@ def test_tile_error_is_max_height_gap_between_level_and_terrain(any_engine, erro
     np.testing.assert_allclose(spans[..., 3], np.broadcast_to(ends[0][:, None], spans.shape[:2]), atol=1e-7)
 
 
-def test_both_drivers_give_the_same_bits(ctx, errors_of):
-    result = []
-    for driver in ("fragment", "compute"):
-        with Engine(ctx, driver=driver) as engine:
-            result.append(errors_of(engine, ROUGH, [65, 50])[1:])
-    for first, other in zip(*result, strict=True):
-        np.testing.assert_array_equal(first, other)
-
-
 def test_tile_with_hole_stays_full_detail_with_finite_span(any_engine, errors_of):
     _, spans, errors = errors_of(any_engine, HOLE, 33)
     assert (errors[0, 1] > 1e29).all() and (errors[1] < 1).all() and (errors[0, 0] < 1).all()
