@@ -6,7 +6,7 @@
 //   units    as the technique
 //   source   Belaiche 2010, section 4.3.1; a random number that depends on its point alone
 //            lets any part of a level be made by itself
-//   tested   tests/glsl/test_diamond_square_variant.py, against the technique's own passes
+//   tested   tests/glsl/test_halving.py, against the technique's own passes
 //   agrees   to the last bit, where the compiler fuses no multiplication with an addition
 //
 // The first step makes the coarse lattice, of 32 spacings a side or fewer, in one group's

@@ -5,7 +5,7 @@
 //   units    heights without unit
 //   source   Keys 1981, "Cubic Convolution Interpolation for Digital Image Processing" (IEEE
 //            Transactions on Acoustics, Speech and Signal Processing 29), with a = -1/2
-//   tested   tests/glsl/test_finer.py, by parabolas, which it keeps, and by the texels it goes
+//   tested   tests/glsl/test_filters.py, by parabolas, which it keeps, and by the texels it goes
 //            through
 //
 // Heights between four texels are those of two planes' edges, and light shows the edges. Here

@@ -5,7 +5,7 @@
 //   units    heights without unit
 //   source   value noise (Belaiche 2010, section 1.3.9), in as few lines as it takes: the kernel
 //            that the first lesson writes
-//   tested   tests/glsl/test_first_height.py, against interpolation in NumPy
+//   tested   tests/glsl/test_noise.py, against interpolation in NumPy
 //
 // Its terrain is the same at any size. There is no salt in its seed and no shift between its
 // octaves: those who write their first kernel have not met what these are for.

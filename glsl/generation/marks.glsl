@@ -5,7 +5,7 @@
 //   units    things by their number, from 0; tiles counted east and north
 //   source   made here; bins of lights by tile, as in O. Olsson and U. Assarsson 2011, "Tiled
 //            Shading" (Journal of Graphics, GPU, and Game Tools 15)
-//   tested   tests/glsl/test_fault_formation.py and tests/glsl/test_circles.py: the terrain is
+//   tested   tests/glsl/test_marks.py: the terrain is
 //            the one without tiles
 //
 // Only for speed: a kernel that adds up many things asks for few of them at each texel. A texel

@@ -4,7 +4,7 @@
 //   needs    generation/normalise/{stretch,tell}.glsl, maths/whole.glsl
 //   units    as the technique
 //   source   as the technique
-//   tested   tests/glsl/test_normalise.py, against NumPy, and tests/glsl/test_fast_variants.py
+//   tested   tests/glsl/test_filters.py, against NumPy, and tests/glsl/test_fast_variants.py
 //   agrees   but for how a division is rounded
 //
 // A processor reads texels one by one, and fours of floats in a buffer several times quicker.

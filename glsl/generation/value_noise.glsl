@@ -5,7 +5,7 @@
 //   units    heights without unit, 0..1
 //   source   Belaiche 2010, section 1.3.9 (there "Perlin"); the quintic of Perlin 2002,
 //            "Improving Noise" (SIGGRAPH)
-//   tested   tests/glsl/test_lesson_value_noise.py, against interpolation in NumPy
+//   tested   tests/glsl/test_noise.py, against interpolation in NumPy
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")
 

@@ -4,7 +4,7 @@
 //   needs    noise/hash.glsl
 //   units    heights without unit, even over 0..1
 //   source   Belaiche 2010, section 1.3.9, figures 1.29 and 1.30
-//   tested   tests/glsl/test_white_noise.py, against the statistics that random numbers must have
+//   tested   tests/glsl/test_noise.py, against the statistics that random numbers must have
 //
 // No height knows of its neighbours, so there is nothing that the eye could take for a hill;
 // the thesis shows it for what the methods after it add. It is a number a texel by definition:

@@ -4,7 +4,7 @@
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    bits are counted from 0
 //   source   a float's exponent is a power of two's logarithm (IEEE 754); GLSL 3.30 has no findLSB
-//   tested   tests/glsl/test_fault_formation.py, against Python's bit_length
+//   tested   tests/glsl/test_marks.py, against Python's bit_length
 #ifndef MATHS_BITS
 #define MATHS_BITS
 

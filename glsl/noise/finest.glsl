@@ -4,7 +4,8 @@
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    points in spacings of a lattice; a side is a power of two, up to 32768
 //   source   derived here
-//   tested   tests/glsl/test_noise.py: the statistics of random numbers; tests/glsl/test_sizes.py:
+//   tested   tests/glsl/test_noise.py: the statistics of random numbers;
+//            tests/glsl/test_generation.py:
 //            a terrain at one size is that at another, read at fewer points
 //
 // A texel's own number would be a key that changes with the size: texel 64 is in the middle of

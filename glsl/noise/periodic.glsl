@@ -8,7 +8,7 @@
 //   source   gradient noise after Perlin 1985, "An Image Synthesizer" (SIGGRAPH), with the
 //            fade of Perlin 2002, "Improving Noise"; cells after Worley 1996, "A Cellular
 //            Texture Basis Function" (SIGGRAPH); wrapped lattices: made here
-//   tested   tests/glsl/test_periodic_noise.py, against float64 twins with the same hash,
+//   tested   tests/glsl/test_noise.py, against float64 twins with the same hash,
 //            and against their own copies one period away
 //
 // The lattice point is wrapped before it is hashed, the place inside its cell is not: so

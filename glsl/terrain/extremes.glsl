@@ -5,7 +5,7 @@
 //   units    any
 //   source   derived here; a sum of n terms is off by at most n half steps of a float, as in
 //            Higham 2002, "Accuracy and Stability of Numerical Algorithms", section 4.2
-//   tested   tests/glsl/test_normalise.py, against NumPy
+//   tested   tests/glsl/test_filters.py, against NumPy
 #ifndef TERRAIN_EXTREMES
 #define TERRAIN_EXTREMES
 

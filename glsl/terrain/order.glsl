@@ -5,7 +5,7 @@
 //   units    heights as they are; keys 32 bits, for atomicMax
 //   source   derived here: the bits of positive floats are in order, those of negative ones in
 //            the reverse order
-//   tested   tests/glsl/test_diamond_square_variant.py, against sorting
+//   tested   tests/glsl/test_halving.py, against sorting
 //
 // The highest of several heights has the greatest key, the lowest the greatest ~key. No
 // height has the key 0 or the ~key 0, so a buffer of zeros holds nothing yet.

@@ -5,7 +5,7 @@
 //   units    heights and phases as they are; lowest and highest as the heights; radii in
 //            spacings of the lattice, lines in pixels
 //   source   Belaiche 2010, figures 1.8 to 1.11, which show red, blue, green and orange points
-//   tested   tests/glsl/test_diamond_square.py, against the colours at the points
+//   tested   tests/glsl/test_halving.py, against the colours at the points
 //
 // They are grey by height, with a ring in the colour of their phase.
 //

@@ -4,7 +4,7 @@
 //   needs    generation/circles/dome.glsl, generation/marks.glsl, maths/whole.glsl
 //   units    heights without unit
 //   source   the sum of generation/circles/raw.glsl
-//   tested   tests/glsl/test_circles.py, as part of the fast variant
+//   tested   tests/glsl/test_marks.py, as part of the fast variant
 #include "generation/circles/dome.glsl"
 #include "generation/marks.glsl"
 #include "maths/whole.glsl"

@@ -4,7 +4,7 @@
 //   needs    generation/circles/dome.glsl, noise/hash.glsl
 //   units    see generation/circles/dome.glsl; height without unit
 //   source   Belaiche 2010, section 1.3.7
-//   tested   tests/glsl/test_circles.py, against a twin in NumPy
+//   tested   tests/glsl/test_marks.py, against a twin in NumPy
 //
 // The thesis says how wide discs are, at random, but not how high: all alike, or the wider
 // the higher, so that none is steeper than another.

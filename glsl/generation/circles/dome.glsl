@@ -4,7 +4,7 @@
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    places in the terrain's shorter side, so that discs are round in metres
 //   source   Belaiche 2010, section 1.3.7; half a cosine as a dome is common for this method
-//   tested   tests/glsl/test_circles.py, against the same curves in Python
+//   tested   tests/glsl/test_marks.py, against the same curves in Python
 #ifndef GENERATION_CIRCLES_DOME
 #define GENERATION_CIRCLES_DOME
 

@@ -4,7 +4,7 @@
 //   needs    generation/circles/dome.glsl
 //   units    heights without unit
 //   source   Belaiche 2010, section 1.3.7; named Lau 1993 there
-//   tested   tests/glsl/test_circles.py, against a twin in NumPy
+//   tested   tests/glsl/test_marks.py, against a twin in NumPy
 //
 // Disc i has the middle c_i, the radius r_i and the height a_i:
 //

@@ -4,7 +4,7 @@
 //   needs    generation/circles/dome.glsl, generation/marks.glsl, maths/whole.glsl
 //   units    see generation/circles/dome.glsl
 //   source   made here
-//   tested   tests/glsl/test_circles.py, as part of the fast variant
+//   tested   tests/glsl/test_marks.py, as part of the fast variant
 //
 // A disc may be marked that touches the tile only nearly; none is left out that touches it.
 #include "generation/circles/dome.glsl"

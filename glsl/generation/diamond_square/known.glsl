@@ -5,7 +5,7 @@
 //   needs    generation/diamond_square/lattice.glsl
 //   units    whole numbers
 //   source   Belaiche 2010, section 1.3.2, figures 1.8 to 1.11
-//   tested   tests/glsl/test_diamond_square.py: how many texels each step sets, and which
+//   tested   tests/glsl/test_halving.py: how many texels each step sets, and which
 //
 // Its steps are those of generation/diamond_square/raw.glsl: both stopped after as many steps
 // are one picture of the algorithm on its way.

@@ -4,7 +4,7 @@
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    texels; steps from 0; a side is a power of two, one less than a terrain's texels
 //   source   Belaiche 2010, sections 1.3.2 and 4.3.1
-//   tested   tests/glsl/test_diamond_square.py, against the thesis's loops
+//   tested   tests/glsl/test_halving.py, against the thesis's loops
 //
 // Step 0 sets the four corners. Then each spacing s = side, side/2, .. 2 has two steps:
 //   centres   (odd steps)   every texel in the middle of four known ones, s/2 diagonally away

@@ -5,7 +5,7 @@
 //   needs    generation/diamond_square/lattice.glsl, noise/hash.glsl
 //   units    heights without unit; columns and rows in spacings of the lattice they belong to
 //   source   Belaiche 2010, sections 1.3.2 and 4.3.1
-//   tested   tests/glsl/test_diamond_square_variant.py: the variant that uses them, against
+//   tested   tests/glsl/test_halving.py: the variant that uses them, against
 //            generation/diamond_square/raw.glsl, bit for bit
 //
 // A lattice's points with even columns and rows are those of the coarser lattice; centres have

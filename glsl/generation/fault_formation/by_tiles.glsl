@@ -4,7 +4,7 @@
 //   needs    generation/fault_formation/line.glsl, generation/marks.glsl
 //   units    heights without unit
 //   source   the sum of generation/fault_formation/sum.glsl
-//   tested   tests/glsl/test_fault_formation.py, as part of the fast variant
+//   tested   tests/glsl/test_marks.py, as part of the fast variant
 #include "generation/fault_formation/line.glsl"
 #include "generation/marks.glsl"
 #pragma kernel(output = "height:r32f")

@@ -5,7 +5,7 @@
 //   units    places in 32768ths of the terrain's sides, east and north, so that a line does not
 //            depend on the terrain's size; a line's points in 4096ths of them
 //   source   Belaiche 2010, section 1.3.6; the whole numbers: made here
-//   tested   tests/glsl/test_fault_formation.py, against cross products of Python's own integers
+//   tested   tests/glsl/test_marks.py, against cross products of Python's own integers
 //
 // A line is three whole numbers: its direction turned left by 90 degrees, and its first point,
 // packed. Nothing is rounded, so every form of the sum agrees on the side of every texel, also of

@@ -6,7 +6,7 @@
 //   source   Belaiche 2010, section 1.3.6; the linear fall as in Polack 2002, "Focus on 3D
 //            Terrain Programming", and the method in Krten 1994, "Generating Realistic
 //            Terrain" (Dr. Dobb's Journal, July)
-//   tested   tests/glsl/test_fault_formation.py, against a twin in NumPy
+//   tested   tests/glsl/test_marks.py, against a twin in NumPy
 //
 // A line goes through two random points of the terrain. The thesis's height is random, and falls
 // by a factor from fault to fault: here the factor falls from 1 for the first fault towards

@@ -4,7 +4,7 @@
 //   needs    generation/fault_formation/line.glsl, maths/whole.glsl
 //   units    heights without unit
 //   source   made here: differences, and their prefix sum
-//   tested   tests/glsl/test_fault_formation.py, against a twin in NumPy
+//   tested   tests/glsl/test_marks.py, against a twin in NumPy
 //   agrees   exactly: sums of whole numbers are the same in any order
 //
 // Each line crosses a row once. A work group has a row. Its readers share the faults: a fault adds

@@ -4,7 +4,7 @@
 //   needs    generation/fault_formation/line.glsl
 //   units    heights without unit
 //   source   Belaiche 2010, section 1.3.6
-//   tested   tests/glsl/test_fault_formation.py, against a twin in NumPy
+//   tested   tests/glsl/test_marks.py, against a twin in NumPy
 //
 // Fault i goes through the points (x1, y1) and (x2, y2), and moves the terrain by a_i:
 //

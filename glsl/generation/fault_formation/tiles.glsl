@@ -5,7 +5,7 @@
 //   needs    generation/fault_formation/line.glsl, generation/marks.glsl, maths/whole.glsl
 //   units    see generation/fault_formation/line.glsl
 //   source   made here
-//   tested   tests/glsl/test_fault_formation.py, as part of the fast variant
+//   tested   tests/glsl/test_marks.py, as part of the fast variant
 #include "generation/fault_formation/line.glsl"
 #include "generation/marks.glsl"
 #include "maths/whole.glsl"

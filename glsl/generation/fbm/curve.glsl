@@ -5,7 +5,8 @@
 //   units    heights in standard deviations of the whole curve, about -3..3
 //   source   Belaiche 2010, section 1.2.1, after Mandelbrot and Van Ness 1968; as a sum of octaves
 //            after Musgrave, in Ebert and others 2003, "Texturing and Modeling", chapter 16
-//   tested   tests/glsl/test_fbm.py: a NumPy twin, and the power spectrum falls as f^-(2H + 1)
+//   tested   tests/glsl/test_gradient_noise.py: a NumPy twin, and the power spectrum falls as
+//            f^-(2H + 1)
 //
 // Each octave is gradient noise of one variable: through every whole number a line of random
 // slope, blended by the quintic fade. Octaves fade at two texels a cell as in the plane.

@@ -4,7 +4,7 @@
 //   needs    nothing
 //   units    whole numbers modulo 2^32
 //   source   see noise/hash.glsl for salts
-//   tested   tests/glsl/test_salts.py
+//   tested   tests/glsl/test_generation.py
 #ifndef GENERATION_FBM_SALT
 #define GENERATION_FBM_SALT
 const uint FBM_SALT = 0x4b648e88u;  // CRC-32 of "generation/fbm"

@@ -5,7 +5,7 @@
 //   units    height without unit; the first octave lies in -1..1
 //   source   Belaiche 2010, section 1.2.1; as a sum of octaves after Musgrave, in Ebert and
 //            others 2003, "Texturing and Modeling", chapter 16
-//   tested   tests/glsl/test_fbm.py, in float64
+//   tested   tests/glsl/test_gradient_noise.py, in float64
 //
 //     h(p) = sum over k of g^k noise_k(l^k p),   g = l^-H
 //

@@ -4,7 +4,7 @@
 //   needs    generation/fourier/wave.glsl
 //   units    as the transform of a grid whose numbers have the mean square 1/3
 //   source   Belaiche 2010, section 1.3.3, step 1
-//   tested   tests/glsl/test_fourier.py, against NumPy; tests/glsl/test_sizes.py
+//   tested   tests/glsl/test_fourier.py, against NumPy; tests/glsl/test_generation.py
 //
 // The thesis's first step is a grid of random numbers. Drawn texel by texel, a seed would be
 // another terrain at every size: the long waves of a grid are sums of all of its numbers. So

@@ -6,7 +6,7 @@
 //   units    heights without unit; stretch: area over area
 //   source   Perlin 1985, "An Image Synthesizer" (SIGGRAPH), moved places; Quilez 2002, "Domain
 //            warping" (iquilezles.org/articles/warp); the determinant: made here
-//   tested   tests/glsl/test_ridges_and_warping.py, against differences in float64, and against
+//   tested   tests/glsl/test_gradient_noise.py, against differences in float64, and against
 //            the choice "warped" of generation/gradient_noise/sum
 //
 //     h(p) = f(p + a g(p)),   g = (g_east, g_north),   stretch = det(I + a dg/dp)

@@ -4,7 +4,7 @@
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    weights without unit
 //   source   Belaiche 2010, section 1.3.9
-//   tested   tests/glsl/test_mixed.py, against NumPy
+//   tested   tests/glsl/test_layered_noise.py, against NumPy
 #ifndef GENERATION_LAYERED_NOISE_WEIGHTS
 #define GENERATION_LAYERED_NOISE_WEIGHTS
 

@@ -4,7 +4,7 @@
 //   needs    noise/finest.glsl, noise/hash.glsl
 //   units    heights without unit
 //   source   Belaiche 2010, section 1.3.5
-//   tested   tests/glsl/test_midpoint_displacement.py, against squares that are divided one by
+//   tested   tests/glsl/test_halving.py, against squares that are divided one by
 //            one, in float64 with the same hash
 //
 // The terrain begins as 0 everywhere. Each step divides every square in four: the middle of an

@@ -4,7 +4,7 @@
 //   needs    noise/finest.glsl, noise/hash.glsl
 //   units    heights without unit
 //   source   Belaiche 2010, section 1.3.5, the three pictures before figure 1.23
-//   tested   tests/glsl/test_midpoint_displacement.py, against a list of points that grows
+//   tested   tests/glsl/test_halving.py, against a list of points that grows
 //
 // Row 0 is the segment, of height 0. A step displaces the middle of every piece by a random
 // number in [-d, d]; the first step's d is 1, each next step's `roughness` times the one

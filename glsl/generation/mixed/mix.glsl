@@ -4,7 +4,7 @@
 //   needs    generation/layered_noise/weights.glsl
 //   units    heights without unit
 //   source   Belaiche 2010, section 4.3.1
-//   tested   tests/glsl/test_mixed.py, against NumPy
+//   tested   tests/glsl/test_layered_noise.py, against NumPy
 //
 // The shape is taken for one more layer, of weight 1. The details come divided by the sum of
 // their weights, and are given their weights again here.

@@ -4,7 +4,7 @@
 //   needs    generation/layered_noise/parts.glsl, generation/layered_noise/weights.glsl
 //   units    heights without unit
 //   source   Belaiche 2010, sections 4.3.1 and 4.3.2
-//   tested   tests/glsl/test_tiled.py, against NumPy
+//   tested   tests/glsl/test_layered_noise.py, against NumPy
 #include "generation/layered_noise/parts.glsl"
 #include "generation/layered_noise/weights.glsl"
 #pragma kernel(output = "height:r32f")

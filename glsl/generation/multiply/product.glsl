@@ -4,7 +4,7 @@
 //   needs    terrain/extremes.glsl
 //   units    heights without unit; the ranges in the same
 //   source   Belaiche 2010, section 1.3.4
-//   tested   tests/glsl/test_multiply.py, against NumPy
+//   tested   tests/glsl/test_layered_noise.py, against NumPy
 //
 // All heights fall, low ones more than high ones. That needs factors in 0..1: one that leaves
 // that range is brought to it, lowest to 0 and highest to 1; one that does not is left alone.

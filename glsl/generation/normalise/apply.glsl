@@ -4,7 +4,7 @@
 //   needs    terrain/extremes.glsl
 //   units    heights without unit; the range in the same
 //   source   Belaiche 2010, section 4.3.1 ("Normalisation": h 256 / max)
-//   tested   tests/glsl/test_normalise.py, against NumPy
+//   tested   tests/glsl/test_filters.py, against NumPy
 //
 // The thesis multiplies by 256 for bytes, which reaches 256 and wraps; here the highest is 1.
 // A flat terrain, roundings apart, has no range to stretch: it becomes 0 by "minmax", and stays by

@@ -4,7 +4,7 @@
 //   needs    terrain/extremes.glsl
 //   units    heights without unit; the range in the same
 //   source   generation/normalise/apply.glsl, which tells what the modes are
-//   tested   tests/glsl/test_normalise.py and tests/glsl/test_fast_variants.py, against that
+//   tested   tests/glsl/test_filters.py and tests/glsl/test_fast_variants.py, against that
 //
 // Only for speed: what the fast variants that normalise share.
 #ifndef GENERATION_NORMALISE_STRETCH

@@ -4,7 +4,7 @@
 //   needs    nothing
 //   units    as the heights
 //   source   a moving sum; derived here
-//   tested   tests/glsl/test_smooth.py, against sums of slices in NumPy
+//   tested   tests/glsl/test_filters.py, against sums of slices in NumPy
 //   agrees   for heights in 0..1: the sum gathers roundings as it slides
 //
 // Each thread goes along a run of texels, with two fetches a texel at any radius: it sums one

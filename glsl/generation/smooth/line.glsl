@@ -4,7 +4,7 @@
 //   needs    nothing
 //   units    as the heights
 //   source   Belaiche 2010, section 1.3.9 (the filter of figure 1.36); one axis of it
-//   tested   tests/glsl/test_smooth.py, against sums of slices in NumPy
+//   tested   tests/glsl/test_filters.py, against sums of slices in NumPy
 //
 // The mean over a square is the mean over rows of the means over columns, also at the border,
 // where what is left of the square is still a rectangle: two passes of this are the filter.

@@ -5,7 +5,7 @@
 //   units    heights without unit; lengths in sides of the terrain
 //   source   Belaiche 2010, section 1.3.1, after Fournier, Fussell and Carpenter 1982
 //            (Communications of the ACM 25, 6)
-//   tested   tests/glsl/test_triangle_subdivision.py, against triangles that are divided
+//   tested   tests/glsl/test_halving.py, against triangles that are divided
 //            one by one, in float64 with the same hash
 //
 // The square is split along its main diagonal, from south-west to north-east. Step 0 sets the

@@ -4,7 +4,7 @@
 //   needs    noise/hash.glsl
 //   units    noise in -1..1, its derivative in noise per cell
 //   source   the derivative by the chain rule, derived here
-//   tested   tests/glsl/test_lesson_value_noise.py, against NumPy and finite differences
+//   tested   tests/glsl/test_noise.py, against NumPy and finite differences
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")
 

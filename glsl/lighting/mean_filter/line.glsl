@@ -4,7 +4,7 @@
 //   needs    maths/whole.glsl
 //   units    as the light
 //   source   Belaiche 2010, section 3.5.2
-//   tested   tests/glsl/test_mean_filter.py, against sums of slices in NumPy
+//   tested   tests/glsl/test_filters.py, against sums of slices in NumPy
 //
 // It is that of a window around each texel, or of the texel's patch.
 //

@@ -4,7 +4,7 @@
 //   needs    terrain/extremes.glsl, maths/whole.glsl
 //   units    as the heights
 //   source   none: a reduction
-//   tested   tests/glsl/test_normalise.py, against NumPy
+//   tested   tests/glsl/test_filters.py, against NumPy
 //
 // The first of the two passes of terrain/range. It works at every size of its own, whatever
 // the terrain's: the blocks cover the terrain and do not overlap, and where there are more blocks

@@ -4,7 +4,7 @@
 //   needs    terrain/extremes.glsl
 //   units    as the ranges
 //   source   none: a reduction
-//   tested   tests/glsl/test_normalise.py, against NumPy
+//   tested   tests/glsl/test_filters.py, against NumPy
 #include "terrain/extremes.glsl"
 #pragma kernel(output = "range:rg32f")
 

@@ -5,7 +5,7 @@
 //   units    heights without unit; not normalised, so that smoothing means something
 //   source   Belaiche 2010, sections 1.3.2 and 4.3.1, after Fournier, Fussell and
 //            Carpenter 1982 (Communications of the ACM 25, 6)
-//   tested   tests/glsl/test_diamond_square.py, against a float64 twin with the same hash
+//   tested   tests/glsl/test_halving.py, against a float64 twin with the same hash
 //
 // Step 0 sets the four corners. Then each spacing s = side, side/2, .. 2 has two steps:
 //

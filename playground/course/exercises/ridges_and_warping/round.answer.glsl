@@ -5,7 +5,7 @@
 //   units    heights without unit; each octave in -1..1, folded in 0..1, times its strength
 //   source   Musgrave, in Ebert and others 2003, "Texturing and Modeling", chapter 16
 //            (RidgedMultifractal, offset 1 and gain 2)
-//   tested   tests/glsl/test_ridges_and_warping.py, against float64, and against the choice
+//   tested   tests/glsl/test_gradient_noise.py, against float64, and against the choice
 //            "ridged" of generation/gradient_noise/sum
 //
 // Noise is positive here and negative there, and 0 along lines between. Folded, those lines are

@@ -4,7 +4,7 @@
 //   needs    maths/whole.glsl
 //   units    texels
 //   source   Belaiche 2010, section 4.3.2
-//   tested   tests/glsl/test_tiled.py, against NumPy
+//   tested   tests/glsl/test_layered_noise.py, against NumPy
 //
 // Neighbours share the texels between them, which belong to the eastern and the northern
 // part: a tile is one texel wider than a part. Only the last part shows its last texels.
