@@ -3,18 +3,11 @@
 import numpy as np
 import pytest
 
+from ..sketch_texts import passes
 from .water_truth import counted, edge_of
 
 # Spacings of 1 m: a cell is 1 m2, so that areas are whole numbers and equality is exact.
-PASSES = """
-[[pass]]
-name = "ways"
-use = "./ways"
-[[pass]]
-name = "drained"
-use = "water/accumulation"
-inputs = {{ receiver = "ways"{rain} }}
-"""
+PASSES = passes(ways="./ways", drained=("water/accumulation", 'inputs = {{ receiver = "ways"{rain} }}'))
 HEAD = """
 #include "noise/hash.glsl"
 #include "water/texels.glsl"
@@ -78,8 +71,8 @@ def test_rain_weighs_what_falls(engine, make_sketch):
 float kernel(ivec2 texel) { return floor(4.0 * random(texel, 8u)); }
 """
     wet = '[[pass]]\nname = "wet"\nuse = "./wet"\n'
-    passes = wet + PASSES.format(rain=', rain = "wet"').replace("accumulation", "discharge")
-    sketch = make_sketch(passes, size=[50, 40], extent=[49.0, 39.0], ways=HEAD + RANDOM, wet=rain)
+    text = wet + PASSES.format(rain=', rain = "wet"').replace("accumulation", "discharge")
+    sketch = make_sketch(text, size=[50, 40], extent=[49.0, 39.0], ways=HEAD + RANDOM, wet=rain)
     ways, area = engine.read(sketch, "ways").copy(), engine.read(sketch, "drained").copy()
     np.testing.assert_array_equal(area, counted(ways, engine.read(sketch, "wet")))
 
@@ -90,23 +83,13 @@ def test_areas_are_in_square_metres(engine, make_sketch):
 
 
 def test_all_of_a_filled_terrain_arrives_at_its_edges(engine, make_sketch):
-    passes = """
-[[pass]]
-name = "height"
-use = "generation/gradient_noise"
-set = { frequency = 3, octaves = 7, seed = 4 }
-[[pass]]
-name = "fill"
-use = "water/fill"
-[[pass]]
-name = "ways"
-use = "water/directions"
-inputs = { height = "fill" }
-[[pass]]
-name = "drained"
-use = "water/accumulation"
-"""
-    sketch = make_sketch(passes, size=[129, 97], extent=[128.0, 96.0], relief=40.0)
+    text = passes(
+        height=("generation/gradient_noise", "set = { frequency = 3, octaves = 7, seed = 4 }"),
+        fill="water/fill",
+        ways=("water/directions", 'inputs = { height = "fill" }'),
+        drained="water/accumulation",
+    )
+    sketch = make_sketch(text, size=[129, 97], extent=[128.0, 96.0], relief=40.0)
     ways, area = engine.read(sketch, "ways").copy(), engine.read(sketch, "drained").copy()
     np.testing.assert_array_equal(area, counted(ways))
     assert area[edge_of(area.shape)].sum(dtype=float) == area.size

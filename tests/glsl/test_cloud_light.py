@@ -6,39 +6,21 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
+from ..sketch_texts import passes
 from .terrains import sun_vector
 from .test_cloud_pictures import BILLOWS, FLAT, NONE, TERRAIN, TOLD, looking, rays
 
 WIDE, BASE, TALL, EXTINCTION, G = 9000.0, 1900.0, 900.0, 0.067, 0.85
 SEEN = (128, 96)
 SKETCH = (
-    """
-[[pass]]
-name = "daylight"
-use = "./told"
-size = [16, 1]
-[[pass]]
-name = "none"
-use = "./none"
-size = 8
-[[pass]]
-name = "cloud"
-use = "clouds/field"
-size = 256
-[[pass]]
-name = "drift"
-use = "clouds/drift"
-size = 1
-set = { base = 1900.0, wide = 9000.0 }
-"""
+    passes(
+        daylight=("./told", "size = [16, 1]"),
+        none=("./none", "size = 8"),
+        cloud=("clouds/field", "size = 256"),
+        drift=("clouds/drift", "size = 1", "set = { base = 1900.0, wide = 9000.0 }"),
+    )
     + BILLOWS
-    + """
-[[pass]]
-name = "seen"
-use = "clouds/seen"
-size = [128, 96]
-inputs = { columns = "none", bounced = "none" }
-"""
+    + passes(seen=("clouds/seen", "size = [128, 96]", 'inputs = { columns = "none", bounced = "none" }'))
 )
 
 

@@ -5,34 +5,18 @@ import pytest
 
 from playground.sketch.model import Camera
 
+from ..sketch_texts import passes
 from .terrains import sun_vector, toml_value
 
 RADIUS = 6360.0
 FLAT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
 SEEN = (96, 64)
 TERRAIN = '[[pass]]\nname = "height"\nuse = "./flat"\n'
-CLOUDS = """
-[[pass]]
-name = "cloud"
-use = "clouds/field"
-size = 256
-[[pass]]
-name = "drift"
-use = "clouds/drift"
-size = 1
-set = { wind = [30.0, -10.0] }
-"""
+CLOUDS = passes(
+    cloud=("clouds/field", "size = 256"), drift=("clouds/drift", "size = 1", "set = { wind = [30.0, -10.0] }")
+)
 BILLOWS = '[[pass]]\nname = "billows"\nuse = "clouds/billows"\nsize = 204\n'
-SKY = """
-[[pass]]
-name = "air"
-use = "scene/air"
-size = [128, 80]
-[[pass]]
-name = "sky"
-use = "scene/sky"
-size = [96, 64]
-"""
+SKY = passes(air=("scene/air", "size = [128, 80]"), sky=("scene/sky", "size = [96, 64]"))
 
 
 def looking(sketch, azimuth, elevation, target=(500.0, 500.0, 300.0), field=40.0):

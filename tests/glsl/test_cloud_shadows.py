@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from ..sketch_texts import passes
 from .terrains import sun_vector
 
 WIDE = 8000.0
@@ -19,25 +20,12 @@ LEVEL = """
 uniform float at = 0.5;
 float kernel(ivec2 texel) { return at; }
 """
-SKETCH = """
-[[pass]]
-name = "height"
-use = "./level"
-[[pass]]
-name = "cloud"
-use = "./dot"
-size = 256
-[[pass]]
-name = "drift"
-use = "clouds/drift"
-size = 1
-set = { wind = [12.0, -7.0], base = 2000.0, wide = 8000.0 }
-[[pass]]
-name = "overhead"
-use = "clouds/shade"
-size = [201, 161]
-set = { sun = [150.0, 40.0] }
-"""
+SKETCH = passes(
+    height="./level",
+    cloud=("./dot", "size = 256"),
+    drift=("clouds/drift", "size = 1", "set = { wind = [12.0, -7.0], base = 2000.0, wide = 8000.0 }"),
+    overhead=("clouds/shade", "size = [201, 161]", "set = { sun = [150.0, 40.0] }"),
+)
 
 
 def sketch_of(make_sketch, rest=""):

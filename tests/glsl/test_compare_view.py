@@ -57,41 +57,24 @@ def test_the_difference_is_grey_where_there_is_none_and_signed(any_engine, pictu
 
 
 def test_variants_have_all_of_their_own(make_sketch, any_engine):
-    passes = """
-[[pass]]
-name = "hills"
-use = "generation/layered_noise"
-[[pass]]
-name = "rough"
-use = "generation/diamond_square"
-[[pass]]
-name = "green"
-use = "texturing/grass"
-size = 32
-[[pass]]
-name = "brown"
-use = "texturing/mud"
-size = 32
-[[pass]]
-name = "sun"
-use = "lighting/l_dot_n"
-inputs = { height = "hills" }
-[[pass]]
-name = "moon"
-use = "lighting/l_dot_n"
-inputs = { height = "rough" }
-set = { gain = 0.6 }
-"""
+    text = passes(
+        hills="generation/layered_noise",
+        rough="generation/diamond_square",
+        green=("texturing/grass", "size = 32"),
+        brown=("texturing/mud", "size = 32"),
+        sun=("lighting/l_dot_n", 'inputs = { height = "hills" }'),
+        moon=("lighting/l_dot_n", 'inputs = { height = "rough" }', "set = { gain = 0.6 }"),
+    )
     of = {"left": ("hills", "green", "sun"), "right": ("rough", "brown", "moon")}
     wires = ", ".join(
         f'{kind}_{side} = "{name}"'
         for side, names in of.items()
         for kind, name in zip(("height", "colour", "light"), names, strict=True)
     )
-    both = make_sketch(f'{passes}[view]\nuse = "view/variants"\ninputs = {{ {wires} }}\n', size=33)
+    both = make_sketch(f'{text}[view]\nuse = "view/variants"\ninputs = {{ {wires} }}\n', size=33)
     for divider, (height, colour, light) in ((1.0, of["left"]), (0.0, of["right"])):
         alone = make_sketch(
-            f'{passes}[view]\nuse = "view/terrain"\n'
+            f'{text}[view]\nuse = "view/terrain"\n'
             f'inputs = {{ height = "{height}", colour = "{colour}", light = "{light}" }}\n',
             size=33,
         )

@@ -5,6 +5,7 @@ import pytest
 
 from playground.errors import SketchError
 
+from ..sketch_texts import passes
 from .water_truth import edge_of, steepest_slopes
 
 ROUGH = """
@@ -20,14 +21,7 @@ float kernel(ivec2 texel) {
     return tilt * float(texel.x) / float(size.x) + rough * random(texel, 11u);
 }
 """
-PASSES = """
-[[pass]]
-name = "height"
-use = "./rough"
-[[pass]]
-name = "down"
-use = "water/directions"
-"""
+PASSES = passes(height="./rough", down="water/directions")
 
 
 @pytest.fixture

@@ -5,20 +5,12 @@ import pytest
 
 from playground.engine.engine import Engine
 
+from ..sketch_texts import passes
 from .water_truth import edge_of, ends_of, flooded
 
-PASSES = """
-[[pass]]
-name = "height"
-use = "./rough"
-[[pass]]
-name = "fill"
-use = "water/fill"
-[[pass]]
-name = "down"
-use = "water/directions"
-inputs = { height = "fill" }
-"""
+PASSES = passes(
+    height="./rough", fill="water/fill", down=("water/directions", 'inputs = { height = "fill" }')
+)
 STOPPED = (
     PASSES.replace('"water/fill"\n', '"water/fill"\nset = {{ "fill.steps" = {steps} }}\n')
     .replace("{ height = ", "{{ height = ")
@@ -55,15 +47,7 @@ def test_equal_to_a_priority_flood(engine, terrain):
     np.testing.assert_allclose(level, flooded(height, SPACING, FALL), rtol=0, atol=2e-6)
 
 
-FLOOD = """
-[[pass]]
-name = "high"
-use = "./high"
-[[pass]]
-name = "flood"
-use = "water/fill/flood"
-inputs = { height = "height", initial = "high" }
-"""
+FLOOD = passes(high="./high", flood=("water/fill/flood", 'inputs = { height = "height", initial = "high" }'))
 HIGH = """
 #include "water/texels.glsl"
 #pragma kernel(output = "level:r32f")
@@ -163,8 +147,8 @@ def test_a_spiral_of_33000_texels_is_filled_to_its_spill(engine, make_sketch):
 
 def _check_fill(engine, make_sketch, heights: np.ndarray) -> None:
     ny, nx = heights.shape
-    passes = PASSES.replace('"./rough"', '"generation/heightmap"')
-    sketch = make_sketch(passes, size=[nx, ny], extent=[10.0 * (nx - 1), 15.0 * (ny - 1)], relief=100.0)
+    text = PASSES.replace('"./rough"', '"generation/heightmap"')
+    sketch = make_sketch(text, size=[nx, ny], extent=[10.0 * (nx - 1), 15.0 * (ny - 1)], relief=100.0)
     sketch = sketch.with_values({"height.elevation": heights})
     height, level = engine.read(sketch, "height").copy(), engine.read(sketch, "fill").copy()
     truth = flooded(height, (10.0, 15.0), 1e-4 / 100.0)

@@ -5,12 +5,7 @@ import pytest
 
 from ..sketch_texts import passes
 
-PASSES = """
-[[pass]]
-name = "made"
-use = "simulation/gray_scott"
-set = {{ {values} }}
-"""
+PASSES = passes(made=("simulation/gray_scott", "set = {{ {values} }}"))
 FED, KILLED, SPREAD = 0.037, 0.06, 0.209
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
+from ..sketch_texts import passes
 from ..truth.noise import bits, lattice_seed, salt, signed
 
 SIDE = 1.5  # of the lattice's triangles, in widths
@@ -138,9 +139,10 @@ def gullied(engine, make_sketch):
         text = ", ".join(f"{k} = {str(v).lower()}" for k, v in values.items())
         extent = [max(n - 1, 1) * metres for n, metres in zip(size, spacing, strict=True)]
         sketch = make_sketch(
-            f'[[pass]]\nname = "raw"\nuse = "./base"\nset = {{ {given} }}\n'
-            f'[[pass]]\nname = "made"\nuse = "erosion/gullies"\ninputs = {{ height = "raw" }}\n'
-            f"set = {{ {text} }}\n",
+            passes(
+                raw=("./base", f"set = {{ {given} }}"),
+                made=("erosion/gullies", 'inputs = { height = "raw" }', f"set = {{ {text} }}"),
+            ),
             size=list(size), extent=extent, relief=RELIEF, base=base,
         )  # fmt: skip
         read = [engine.read(sketch, ref) for ref in ("raw", "made:height", "made:gully")]

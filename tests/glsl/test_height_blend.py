@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from ..sketch_texts import passes
+
 # Terrain_RemplitPerc as a table: heights where a weight begins or ends to change.
 BYTES = [0, 60, 130, 180, 220, 255]
 TABLE = {"grass": [1, 1, 0, 0, 0, 0], "rock": [0, 0, 1, 1, 0, 0], "snow": [0, 0, 0, 0, 1, 1]}
@@ -18,28 +20,17 @@ IMAGES = {
     "stone": IMAGE.format("0.0, 1.0, 0.0, 1.0"),
     "ice": IMAGE.format("0.0, 0.0, 1.0, 1.0"),
 }
-PASSES = """
-[[pass]]
-name = "height"
-use = "./ramp"
-[[pass]]
-name = "meadow"
-use = "./meadow"
-size = 4
-[[pass]]
-name = "stone"
-use = "./stone"
-size = 16
-[[pass]]
-name = "ice"
-use = "./ice"
-size = 1
-[[pass]]
-name = "colour"
-use = "texturing/height_blend"
-inputs = {{ "grass.colour" = "meadow", "rock.colour" = "stone", "snow.colour" = "ice" }}
-{}
-"""
+PASSES = passes(
+    height="./ramp",
+    meadow=("./meadow", "size = 4"),
+    stone=("./stone", "size = 16"),
+    ice=("./ice", "size = 1"),
+    colour=(
+        "texturing/height_blend",
+        'inputs = {{ "grass.colour" = "meadow", "rock.colour" = "stone", "snow.colour" = "ice" }}',
+        "{}",
+    ),
+)
 
 
 def thesis(height: np.ndarray) -> np.ndarray:
@@ -156,9 +147,9 @@ def test_a_user_s_image_replaces_each_material(any_engine, make_sketch, tmp_path
 
 
 def test_its_own_images_stand_in_where_none_is_wired(any_engine, make_sketch):
-    passes = PASSES.format("")
-    begin, end = passes.index('[[pass]]\nname = "meadow"'), passes.index('[[pass]]\nname = "colour"')
-    own = passes[:begin] + passes[end:].split("inputs", maxsplit=1)[0]
+    body = PASSES.format("")
+    begin, end = body.index('[[pass]]\nname = "meadow"'), body.index('[[pass]]\nname = "colour"')
+    own = body[:begin] + body[end:].split("inputs", maxsplit=1)[0]
     colour = any_engine.read(make_sketch(own, size=[256, 16], ramp=EASTWARD), "colour").astype(float)
     grass, rock, snow = (colour[:, a:b, :3].mean(axis=(0, 1)) for a, b in ((0, 50), (135, 175), (225, 256)))
     assert grass[1] > grass[0] > grass[2]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
+from ..sketch_texts import passes
 from .terrains import HILLS, sun_vector
 
 HALF = 2.0**-11
@@ -44,7 +45,7 @@ def shade(heights, sun, spacing):
 
 
 def clearance(heights, sun, spacing, step_length=1.0):
-    """Return how far above the terrain each ray passes at its nearest step [m]: no early end, float64."""
+    """Return how far above the terrain each ray text at its nearest step [m]: no early end, float64."""
     ny, nx = heights.shape
     y, x = np.mgrid[0:ny, 0:nx].astype(np.float64)
     texels = sun[:2] / spacing  # a metre along the ray, in texels
@@ -142,10 +143,8 @@ def test_colours_gain_and_ambient(engine, lit, method):
 
 @BOTH
 def test_gain_is_not_cut_at_1_and_is_2_by_default(engine, lit, method, make_sketch):
-    passes = (
-        f'[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "light"\nuse = "lighting/{method}"\n'
-    )
-    sketch = make_sketch(passes, terrain=PLANE)
+    text = passes(height="./terrain", light=f"lighting/{method}")
+    sketch = make_sketch(text, terrain=PLANE)
     light = engine.read(sketch.with_values({"light.sun": (0, 90)}), "light")
     np.testing.assert_array_equal(light, [[[2, 2, 2, 1]] * 33] * 33)
 
@@ -262,29 +261,21 @@ def test_light_is_what_is_seen_of_the_sun_and_of_the_sky(engine, make_sketch):
 uniform vec3 step_of = vec3(0.1, 0.0, 0.0);
 vec4 kernel(ivec2 texel) { return vec4(float(texel.x) * step_of, 1.0); }
 """
-    passes = """
-[[pass]]
-name = "height"
-use = "./terrain"
-set = { rise = [0.05, 0.02] }
-[[pass]]
-name = "visibility"
-use = "./given"
-[[pass]]
-name = "sky_factor"
-use = "./given"
-set = { step_of = [0.0, 0.05, 0.1] }
-[[pass]]
-name = "light"
-use = "lighting/shade"
-[pass.set]
-sun = [200.0, 40.0]
-gain = 1.5
-sun_colour = [1.0, 0.8, 0.6]
-sky_colour = [0.5, 0.6, 0.7]
-ambient = 0.3
-"""
-    sketch = make_sketch(passes, size=9, extent=80.0, relief=50.0, terrain=PLANE, given=value)
+    text = passes(
+        height=("./terrain", "set = { rise = [0.05, 0.02] }"),
+        visibility="./given",
+        sky_factor=("./given", "set = { step_of = [0.0, 0.05, 0.1] }"),
+        light=(
+            "lighting/shade",
+            "[pass.set]",
+            "sun = [200.0, 40.0]",
+            "gain = 1.5",
+            "sun_colour = [1.0, 0.8, 0.6]",
+            "sky_colour = [0.5, 0.6, 0.7]",
+            "ambient = 0.3",
+        ),
+    )
+    sketch = make_sketch(text, size=9, extent=80.0, relief=50.0, terrain=PLANE, given=value)
     light = engine.read(sketch, "light")
     x = np.broadcast_to(np.arange(9), (9, 9))
     normal = np.array([-0.05 * 50 / 10, -0.02 * 50 / 10, 1.0])
@@ -306,11 +297,12 @@ def test_light_of_other_size_interpolates_its_inputs(engine, make_sketch):
 #pragma kernel(output = "v:r32f")
 float kernel(ivec2 texel) { return float(texel.x + 2 * texel.y) / 64.0; }
 """
-    passes = (
-        '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "visibility"\nuse = "./given"\n'
-        '[[pass]]\nname = "light"\nuse = "lighting/shade"\nsize = [25, 33]\nset = { sun = [0.0, 90.0] }\n'
+    text = passes(
+        height="./terrain",
+        visibility="./given",
+        light=("lighting/shade", "size = [25, 33]", "set = { sun = [0.0, 90.0] }"),
     )
-    light = engine.read(make_sketch(passes, size=9, terrain=PLANE, given=value), "light")
+    light = engine.read(make_sketch(text, size=9, terrain=PLANE, given=value), "light")
     y, x = np.mgrid[0:33, 0:25]
     np.testing.assert_allclose(light[..., 3], (x / 3 + 2 * (y / 4)) / 64, rtol=2 * HALF, atol=1e-4)
 

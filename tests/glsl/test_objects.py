@@ -9,6 +9,7 @@ from playground.data.models import read_model
 from playground.paths import GLSL
 
 from ..data.test_models import PLACES, with_blob
+from ..sketch_texts import passes
 
 LIST = """
 #pragma kernel(output = "tree:rgba32f, total:r32f")
@@ -18,25 +19,19 @@ void kernel(ivec2 texel, out vec4 tree, out float total) {
     total = total_of;
 }
 """
-PASSES = """
-[[pass]]
-name = "list"
-use = "./list"
-size = [2, 1]
-[[pass]]
-name = "model"
-use = "objects/model"
-set = {{ model = "sketches/data/{name}.glb" }}
-[[pass]]
-name = "seen"
-use = "objects/seen"
-size = [256, 256]
-inputs = {{ tree = "list:tree", total = "list:total" }}
-set = {{ {values} }}
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[view]
+PASSES = (
+    passes(
+        list=("./list", "size = [2, 1]"),
+        model=("objects/model", 'set = {{ model = "sketches/data/{name}.glb" }}'),
+        seen=(
+            "objects/seen",
+            "size = [256, 256]",
+            'inputs = {{ tree = "list:tree", total = "list:total" }}',
+            "set = {{ {values} }}",
+        ),
+        height="generation/white_noise",
+    )
+    + """[view]
 use = "view/terrain"
 [view.camera]
 azimuth = 160.0
@@ -45,6 +40,7 @@ distance = 60.0
 target = [500.0, 400.0, 26.0]
 field_of_view = 20.0
 """
+)
 
 
 @pytest.mark.parametrize(("name", "kind"), [("conifer", "needles"), ("rock", "rock")])
@@ -82,14 +78,14 @@ def test_only_those_within_its_distances_are_drawn(kept, ctx, make_sketch, value
     assert not kept.read(sketch.with_values({"list.total_of": 0.0}), "seen", size=(256, 256)).any()
 
 
-BOTH = """
-[[pass]]
-name = "both"
-use = "trees/seen"
-size = [256, 256]
-inputs = { tree = "list:tree", total = "list:total", initial = "seen" }
-set = { nearest = FROM }
-"""
+BOTH = passes(
+    both=(
+        "trees/seen",
+        "size = [256, 256]",
+        'inputs = { tree = "list:tree", total = "list:total", initial = "seen" }',
+        "set = { nearest = FROM }",
+    )
+)
 
 
 @pytest.mark.parametrize("limit", [100, 40])
@@ -106,21 +102,15 @@ def test_a_tree_is_a_model_or_a_billboard_and_never_both(kept, ctx, make_sketch,
         assert not model.any()
 
 
-COVERED = """
-[[pass]]
-name = "red"
-use = "./red"
-[[pass]]
-name = "ground"
-use = "scene/ground"
-size = [33, 33]
-inputs = { height = "height" }
-[[pass]]
-name = "covered"
-use = "scene/cover"
-size = [256, 256]
-inputs = { seen = "seen", ground = "ground", colour = "red" }
-"""
+COVERED = passes(
+    red="./red",
+    ground=("scene/ground", "size = [33, 33]", 'inputs = { height = "height" }'),
+    covered=(
+        "scene/cover",
+        "size = [256, 256]",
+        'inputs = { seen = "seen", ground = "ground", colour = "red" }',
+    ),
+)
 
 
 @pytest.mark.parametrize("name", ["rock", "conifer"])

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from ..sketch_texts import passes, use
+
 # A river due east through the middle row, or north-east over the diagonal; all else drains nothing.
 RIVER = """
 #include "water/texels.glsl"
@@ -16,16 +18,10 @@ void kernel(ivec2 texel, out float receiver, out float area) {
     area = river ? drained : 0.0;
 }
 """
-PASSES = """
-[[pass]]
-name = "ways"
-use = "./ways"
-[[pass]]
-name = "rivers"
-use = "water/rivers"
-inputs = {{ receiver = "ways:receiver", area = "ways:area" }}
-size = {size}
-"""
+PASSES = passes(
+    ways="./ways",
+    rivers=("water/rivers", 'inputs = {{ receiver = "ways:receiver", area = "ways:area" }}', "size = {size}"),
+)
 EXTENT = 1600.0  # 33 nodes, 50 m apart
 
 
@@ -81,32 +77,25 @@ void kernel(ivec2 texel, out float height, out float level) {
 
 
 def test_lakes_are_as_deep_as_the_level_is_above_the_ground(engine, make_sketch):
-    passes = """
-[[pass]]
-name = "ground"
-use = "./ground"
-[[pass]]
-name = "lake"
-use = "water/lakes"
-set = { shallowest = 15 }
-inputs = { height = "ground:height", level = "ground:level" }
-"""
-    sketch = make_sketch(passes, size=[9, 3], relief=100.0, ground=GROUND)
+    text = passes(
+        ground="./ground",
+        lake=(
+            "water/lakes",
+            "set = { shallowest = 15 }",
+            'inputs = { height = "ground:height", level = "ground:level" }',
+        ),
+    )
+    sketch = make_sketch(text, size=[9, 3], relief=100.0, ground=GROUND)
     expected = [50, 40, 30, 20, 0, 0, 0, 0, 0]
     np.testing.assert_allclose(engine.read(sketch, "lake"), np.tile(expected, (3, 1)), atol=1e-4)
 
 
 @pytest.mark.parametrize("slope", [0.02, 0.5])
 def test_wetness_is_beven_and_kirkbys_index(engine, make_sketch, slope):
-    passes = """
-[[pass]]
-name = "plane"
-use = "./plane"
-[[pass]]
-name = "wetness"
-use = "water/wetness"
-inputs = { height = "plane:height", area = "plane:area" }
-"""
+    text = passes(
+        plane="./plane",
+        wetness=("water/wetness", 'inputs = { height = "plane:height", area = "plane:area" }'),
+    )
     plane = f"""
 #pragma kernel(output = "height:r32f, area:r32f")
 void kernel(ivec2 texel, out float height, out float area) {{
@@ -114,23 +103,25 @@ void kernel(ivec2 texel, out float height, out float area) {{
     area = 1e4 * float(texel.y + 1);
 }}
 """
-    sketch = make_sketch(passes, size=[9, 7], extent=[400.0, 300.0], plane=plane)
+    sketch = make_sketch(text, size=[9, 7], extent=[400.0, 300.0], plane=plane)
     index = np.log(1e4 * np.arange(1, 8) / 50.0 / slope)
     expected = np.clip((index - 5) / 9, 0, 1)
     np.testing.assert_allclose(engine.read(sketch, "wetness")[:, 4], expected, atol=2e-5)
 
 
 def test_water_lies_over_the_colour(engine, make_sketch):
-    passes = """
-[[pass]]
-name = "given"
-use = "./given"
-[[pass]]
-name = "colour"
-use = "texturing/waters"
-set = { shallow = [0.0, 1.0, 0.0], deep = [0.0, 0.0, 1.0], clarity = 5, shore = 2, darkening = 0.5 }
-inputs = { colour = "given:colour", river = "given:river", lake = "given:lake", wetness = "given:wetness" }
-"""
+    text = passes(
+        given="./given",
+        colour=use(
+            "texturing/waters",
+            inputs={name: f"given:{name}" for name in ("colour", "river", "lake", "wetness")},
+            shallow=(0.0, 1.0, 0.0),
+            deep=(0.0, 0.0, 1.0),
+            clarity=5,
+            shore=2,
+            darkening=0.5,
+        ),
+    )
     value = """
 #pragma kernel(output = "colour:rgba32f, river:r32f, lake:r32f, wetness:r32f")
 void kernel(ivec2 texel, out vec4 colour, out float river, out float lake, out float wetness) {
@@ -140,7 +131,7 @@ void kernel(ivec2 texel, out vec4 colour, out float river, out float lake, out f
     wetness = texel.x == 4 ? 1.0 : 0.0;
 }
 """
-    result = engine.read(make_sketch(passes, size=[5, 2], given=value), "colour")[0, :, :3]
+    result = engine.read(make_sketch(text, size=[5, 2], given=value), "colour")[0, :, :3]
     shallow = np.exp(-0.2)
     expected = [
         [1, 1, 1],

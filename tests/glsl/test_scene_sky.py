@@ -7,6 +7,7 @@ import pytest
 
 from playground.sketch.model import Camera
 
+from ..sketch_texts import passes
 from .test_scene_air import FLAT, depth
 
 SIZE = (96, 64)
@@ -15,35 +16,25 @@ COLOUR = """
 uniform float grey = 0.5;
 vec4 kernel(ivec2 texel) { return vec4(vec3(grey), 1.0); }
 """
-VIEW = """
-[[pass]]
-name = "height"
-use = "./flat"
-[[pass]]
-name = "colour"
-use = "./grey"
-[[pass]]
-name = "daylight"
-use = "lighting/daylight"
-set = { position = "free", sun = [140.0, 50.0], adaptation = 0.0, turbidity = 3.0, clouds = 0.5 }
-[[pass]]
-name = "cloud"
-use = "clouds/field"
-size = 128
-[[pass]]
-name = "drift"
-use = "clouds/drift"
-size = 1
-[[pass]]
-name = "shade"
-use = "clouds/shade"
-size = 401
-[view]
+VIEW = (
+    passes(
+        height="./flat",
+        colour="./grey",
+        daylight=(
+            "lighting/daylight",
+            'set = { position = "free", sun = [140, 50], adaptation = 0.0, turbidity = 3.0, clouds = 0.5 }',
+        ),
+        cloud=("clouds/field", "size = 128"),
+        drift=("clouds/drift", "size = 1"),
+        shade=("clouds/shade", "size = 401"),
+    )
+    + """[view]
 use = "scene/terrain"
 set = { gain = 1.0, ambient = 1.0 }
 samples = 1
 inputs = { columns = "daylight:columns", bounced = "daylight:bounced", dome = "daylight:dome" }
 """
+)
 
 
 @pytest.fixture

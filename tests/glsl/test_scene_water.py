@@ -14,6 +14,7 @@ from playground.paths import GLSL
 from playground.shader.source import read_source
 from playground.sketch.model import Camera
 
+from ..sketch_texts import passes
 from .test_scene import EXTENT, LOOK, PASSES, PLANE, RELIEF, SIZE, all_pixels, on_plane, rays
 from .test_water_surface import fresnel
 
@@ -41,13 +42,13 @@ def scene(make_sketch):
         level=LEVEL,
         water="water/sea",
         size=(65, 41),
-        passes="",
+        body="",
         wired="",
     ):
         sea = f'[[pass]]\nname = "water"\nuse = "{water}"\nsize = 1\nset = {{ sea_level = {level} }}\n'
         set_ = f"set = {{ antialias = false, grid = 65, {given} }}"
         inputs = f"inputs = {{ {wired} }}\n" if wired else ""
-        text = f'{PASSES}{sea}{passes}[view]\nuse = "scene/terrain"\nsamples = 1\n{inputs}{set_}\n'
+        text = f'{PASSES}{sea}{body}[view]\nuse = "scene/terrain"\nsamples = 1\n{inputs}{set_}\n'
         files = {"terrain": HEIGHT.format(height), "cover": COLOUR.format(colour), "grey": GREY}
         sketch = make_sketch(text, size=list(size), extent=list(EXTENT), relief=RELIEF, **files)
         return sketch.with_camera(LOOK)
@@ -110,7 +111,7 @@ def test_pictures_without_water_in_sight_stay_as_they_are(any_engine, scene, lev
 def test_clouds_that_no_drift_places_are_none(any_engine, scene):
     value = "wind = 2.0, gain = 1.0, ambient = 0.5, clouds = 1"
     grey = '[[pass]]\nname = "grey"\nuse = "./grey"\n'
-    sketch, clear = scene(given=value, passes=grey, wired='cloud = "grey"'), scene(given=value)
+    sketch, clear = scene(given=value, body=grey, wired='cloud = "grey"'), scene(given=value)
     result, expected = (read(any_engine, sketch, "watered.surface") for sketch in (sketch, clear))
     np.testing.assert_array_equal(result, expected)
 
@@ -206,33 +207,24 @@ def test_no_shader_takes_more_textures_than_every_device_has():
         assert len(set(re.findall(r"^uniform sampler2D (\w+)", code, re.MULTILINE))) <= 16, path.name
 
 
-OUTDOORS = """
-[[pass]]
-name = "height"
-use = "./flat"
-[[pass]]
-name = "daylight"
-use = "lighting/daylight"
-set = { position = "free", sun = [150.0, 40.0], adaptation = 0.0, clouds = COVER }
-[[pass]]
-name = "cloud"
-use = "clouds/field"
-size = 256
-[[pass]]
-name = "drift"
-use = "clouds/drift"
-size = 1
-[[pass]]
-name = "water"
-use = "water/sea"
-size = 1
-set = { sea_level = 50.0 }
-[view]
+OUTDOORS = (
+    passes(
+        height="./flat",
+        daylight=(
+            "lighting/daylight",
+            'set = { position = "free", sun = [150.0, 40.0], adaptation = 0.0, clouds = COVER }',
+        ),
+        cloud=("clouds/field", "size = 256"),
+        drift=("clouds/drift", "size = 1"),
+        water=("water/sea", "size = 1", "set = { sea_level = 50.0 }"),
+    )
+    + """[view]
 use = "scene/terrain"
 samples = 1
 inputs = { dome = "daylight:dome" }
 set = { wind = 0.0, gain = 1.0, ambient = 1.0, foam = 0.0, deep = [0.0, 0.0, 0.0], clarity = 0.05 }
 """
+)
 
 
 def mirrored_and_above(engine, make_sketch, cover):

@@ -16,6 +16,7 @@ from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.shader.parameter import MAX_SIDE
 
+from ..sketch_texts import passes
 from .terrains import HILLS, toml_value
 
 DATA = Path(__file__).resolve().parents[2] / "glsl/sketches/data/jacksboro_fault_dem.npz"
@@ -56,12 +57,11 @@ def jacksboro(make_sketch, tmp_path):
 
     def make(method, sun, **values):
         settings = "".join(f"{k} = {toml_value(v)}\n" for k, v in {"sun": sun, **values}.items())
-        passes = (
-            '[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
-            f'set = {{ elevation = "{DATA.name}" }}\n'
-            f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n[pass.set]\n{settings}'
+        text = passes(
+            height=("generation/heightmap", f'set = {{ elevation = "{DATA.name}" }}'),
+            light=(f"lighting/{method}", "[pass.set]", f"{settings}"),
         )
-        return make_sketch(passes, size=[403, 344], extent=[29900.0, 31900.0], relief=840.0)
+        return make_sketch(text, size=[403, 344], extent=[29900.0, 31900.0], relief=840.0)
 
     return make
 
@@ -126,13 +126,12 @@ def part_of_disc(line):
 @pytest.mark.parametrize("method", ["ray_cast", *SOFT])
 def test_a_march_rounds_alike_by_uniforms_and_by_constants(ctx, make_sketch, monkeypatch, method, sampling):
     """A software renderer compiles menus in as constants; a GPU, and a page, have them as uniforms."""
-    passes = (
-        '[[pass]]\nname = "height"\nuse = "generation/gradient_noise"\n'
-        f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n'
-        f'set = {{ sun = [110.0, 15.0], sampling = "{sampling}" }}\n'
+    text = passes(
+        height="generation/gradient_noise",
+        light=(f"lighting/{method}", f'set = {{ sun = [110.0, 15.0], sampling = "{sampling}" }}'),
     )
     sketches = [
-        make_sketch(passes, size=list(size), extent=640.0, relief=130.0).with_values({"height.seed": seed})
+        make_sketch(text, size=list(size), extent=640.0, relief=130.0).with_values({"height.seed": seed})
         for seed, size in [(3, (65, 33)), (9978, (50, 77))]
     ]
     sketches += [sketch.plainly() for sketch in sketches]
@@ -151,11 +150,10 @@ def test_a_march_rounds_alike_by_uniforms_and_by_constants(ctx, make_sketch, mon
 
 @pytest.mark.parametrize("size", [(1, 1), (16, 17), (65, 33), (40, 100)], ids=str)
 def test_block_maxima_cover_blocks_and_their_borders(any_engine, make_sketch, size):
-    passes = (
-        '[[pass]]\nname = "height"\nuse = "generation/white_noise"\n'
-        '[[pass]]\nname = "maxima"\nuse = "lighting/block_maxima"\nsize = "(height.size + 15) // 16"\n'
+    text = passes(
+        height="generation/white_noise", maxima=("lighting/block_maxima", 'size = "(height.size + 15) // 16"')
     )
-    sketch = make_sketch(passes, size=list(size))
+    sketch = make_sketch(text, size=list(size))
     heights = any_engine.read(sketch, "height")
     maxima = any_engine.read(sketch, "maxima")
     # The filter's window begins at its own texel, and what lies beside the terrain is as low as can be.
@@ -168,18 +166,18 @@ def test_block_maxima_cover_blocks_and_their_borders(any_engine, make_sketch, si
 def test_leaps_pass_over_nothing(any_engine, make_sketch, method, sun):
     """With blocks that reach to the sky every step is looked at, and the bits are the same."""
     sky = '#pragma kernel(output = "block_maxima:r32f")\nfloat kernel(ivec2 texel) { return 1e6; }\n'
-    head = (
-        '[[pass]]\nname = "height"\nuse = "generation/gradient_noise"\nset = { frequency = 3.0, seed = 5 }\n'
-        '[[pass]]\nname = "range"\nuse = "terrain/range"\n'
-        '[[pass]]\nname = "horizon"\nuse = "./sky"\nsize = 1\n'
+    head = passes(
+        height=("generation/gradient_noise", "set = { frequency = 3.0, seed = 5 }"),
+        range="terrain/range",
+        horizon=("./sky", "size = 1"),
     )
     result = []
     for use in ("lighting/block_maxima", "./sky"):
-        passes = (
+        text = (
             f'{head}[[pass]]\nname = "block_maxima"\nuse = "{use}"\nsize = "(height.size + 15) // 16"\n'
             f'[[pass]]\nname = "seen"\nuse = "lighting/{method}/leaping"\nset = {{ sun = {list(sun)} }}\n'
         )
-        sketch = make_sketch(passes, size=[200, 150], extent=[3000.0, 2000.0], relief=700.0, sky=sky)
+        sketch = make_sketch(text, size=[200, 150], extent=[3000.0, 2000.0], relief=700.0, sky=sky)
         result.append(any_engine.read(sketch, "seen"))
     assert 0.05 < (result[0] < 1).mean() and (result[0] > 0).mean() > 0.05
     np.testing.assert_array_equal(result[0], result[1])

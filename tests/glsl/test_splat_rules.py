@@ -7,6 +7,8 @@ import pytest
 
 from playground.sketch.model import Camera
 
+from ..sketch_texts import passes
+
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 MASK = '#pragma kernel(output = "mask:rgba32f")\nvec4 kernel(ivec2 texel) {{ return {}; }}\n'
 TERRAIN = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
@@ -168,21 +170,11 @@ def test_a_path_may_wander_but_not_away(any_engine, make_sketch):
 
 # ── the map ──────────────────────────────────────────────────────────────────
 
-STACK = """
-[[pass]]
-name = "rock"
-use = "./one"
-[[pass]]
-name = "snow"
-use = "./two"
-[[pass]]
-name = "path"
-use = "./three"
-{}[[pass]]
-name = "weights"
-use = "texturing/alpha_map/stack"
-{}
-"""
+STACK = passes(
+    rock="./one",
+    snow="./two",
+    path=("./three", "{}[[pass]]", 'name = "weights"', 'use = "texturing/alpha_map/stack"', "{}"),
+)
 COVERS = {
     name: '#include "noise/hash.glsl"\n' + MASK.format(f"vec4(random(texel, {n}u))")
     for n, name in enumerate(("one", "two", "three"))

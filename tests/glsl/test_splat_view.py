@@ -9,6 +9,8 @@ import pytest
 
 from playground.sketch.model import Camera
 
+from ..sketch_texts import passes
+
 COLOUR = '#include "noise/hash.glsl"\n#pragma kernel(output = "colour:rgba16f")\n'
 COLOUR += "vec4 kernel(ivec2 texel) {{ return {}; }}\n"
 WEIGHTS = COLOUR.replace("colour:rgba16f", "weights:rgba8").replace("return", "{}; return")
@@ -22,9 +24,7 @@ TILES = "".join(f'[[pass]]\nname = "{name}"\nuse = "./{name}"\nsize = 64\n' for 
 BILINEAR = "vec4(s.x * s.y, (1.0 - s.x) * s.y, s.x * (1.0 - s.y), (1.0 - s.x) * (1.0 - s.y))"
 SPREAD = WEIGHTS.format("vec2 s = vec2(texel) / vec2(size - 1)", BILINEAR)
 HILLS = HEIGHT.format("0.5 + 0.5 * sin(float(texel.x) * 0.4) * cos(float(texel.y) * 0.3)")
-TERRAIN = (
-    '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "weights"\nuse = "./weights"\n' + TILES
-)
+TERRAIN = passes(height="./terrain", weights="./weights") + TILES
 SUN = '[[pass]]\nname = "light"\nuse = "lighting/l_dot_n"\n'
 VIEW = '[view]\nuse = "{}"\nsamples = {}\nset = {{ grid = 65{} }}\n'
 LOOK = Camera(azimuth=200, elevation=35, distance=1500, target=(500, 500, 0))
@@ -113,18 +113,10 @@ vec4 fragment() { return vec4(1.0, 0.0, 0.0, 0.0); }
 """
 
 
-TIES = """
-[[pass]]
-name = "first"
-use = "view/splat_multipass/first"
-[[pass]]
-name = "terrain"
-use = "./count"
-inputs = { initial = "first" }
-[inputs]
-height = ["first.height", "terrain.height"]
-grass = "first.colour"
-"""
+TIES = (
+    passes(first="view/splat_multipass/first", terrain=("./count", 'inputs = { initial = "first" }'))
+    + '[inputs]\nheight = ["first.height", "terrain.height"]\ngrass = "first.colour"\n'
+)
 
 
 @pytest.mark.slow

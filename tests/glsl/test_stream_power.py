@@ -7,23 +7,15 @@ import pytest
 
 from playground.paths import SKETCHES
 
+from ..sketch_texts import passes
 from .water_truth import counted, edge_of, ends_of, exceedance_power, flooded
 
 EXTENT, RELIEF = 20480.0, 1200.0
-PASSES = """
-[[pass]]
-name = "noise"
-use = "generation/gradient_noise"
-set = { frequency = 16, octaves = 8, seed = 5 }
-[[pass]]
-name = "low"
-use = "./low"
-inputs = { height = "noise" }
-[[pass]]
-name = "rivers"
-use = "erosion/stream_power"
-inputs = { height = "low" }
-"""
+PASSES = passes(
+    noise=("generation/gradient_noise", "set = { frequency = 16, octaves = 8, seed = 5 }"),
+    low=("./low", 'inputs = { height = "noise" }'),
+    rivers=("erosion/stream_power", 'inputs = { height = "low" }'),
+)
 LOW = """
 #pragma kernel(output = "height:r32f")
 uniform sampler2D height;  //! input
@@ -47,8 +39,8 @@ BARE = {**ONE_LEVEL, "creep": 0.0, "steepest": 89.0, "head": 0.0, "randomness": 
 def worn(ctx, kept, make_sketch):
     """Give ``worn(size, **parameters)``: metres, ways, areas [m2], and the metres before."""
 
-    def wear(size, passes=PASSES, extent=EXTENT, turn=0, dome=0.0, **values):
-        sketch = make_sketch(passes, size=size, extent=extent, relief=RELIEF, low=LOW, two=TWO)
+    def wear(size, body=PASSES, extent=EXTENT, turn=0, dome=0.0, **values):
+        sketch = make_sketch(body, size=size, extent=extent, relief=RELIEF, low=LOW, two=TWO)
         chosen = {f"rivers.{k}": v for k, v in {"keep": 1.0, **values}.items()}
         sketch = sketch.with_values({"low.turn": turn, "low.dome": dome, **chosen})
         names = ("rivers:height", "rivers:receiver", "rivers:area", "low")
@@ -97,8 +89,8 @@ def test_rain_makes_a_steady_state_of_discharges(engine, make_sketch):
     def steady(rain="", text=HALF_DRY, **more):
         wet = f'[[pass]]\nname = "wet"\nuse = "./wet"\nsize = {rain}\n' if rain else ""
         wired = 'inputs = { height = "low", rain = "wet" }' if rain else 'inputs = { height = "low" }'
-        passes = wet + PASSES.replace('inputs = { height = "low" }', wired)
-        sketch = make_sketch(passes, size=49, extent=EXTENT, relief=RELIEF, low=LOW, wet=text)
+        body = wet + PASSES.replace('inputs = { height = "low" }', wired)
+        sketch = make_sketch(body, size=49, extent=EXTENT, relief=RELIEF, low=LOW, wet=text)
         sketch = sketch.with_values({f"rivers.{k}": v for k, v in {**values, **more}.items()})
         height = RELIEF * engine.read(sketch, "rivers:height").astype(float)
         return height, engine.read(sketch, "rivers:receiver").astype(int)
@@ -121,15 +113,7 @@ def test_rain_makes_a_steady_state_of_discharges(engine, make_sketch):
 
 
 def test_links_are_solved_as_one_after_another(engine, make_sketch):
-    passes = """
-[[pass]]
-name = "links"
-use = "./links"
-[[pass]]
-name = "solved"
-use = "erosion/stream_power/solve"
-inputs = { initial = "links" }
-"""
+    body = passes(links="./links", solved=("erosion/stream_power/solve", 'inputs = { initial = "links" }'))
     links = """
 #include "noise/hash.glsl"
 #include "water/texels.glsl"
@@ -141,7 +125,7 @@ vec4 kernel(ivec2 texel) {
                         : vec4(drawn.x, drawn.y, number_of(to, size), 0.0);
 }
 """
-    sketch = make_sketch(passes, size=[31, 90], links=links)
+    sketch = make_sketch(body, size=[31, 90], links=links)
     link = engine.read(sketch, "links").reshape(-1, 4).astype(float)
     expected = link[:, 0].copy()
     for number in range(31, len(link)):
@@ -162,22 +146,19 @@ def test_nothing_is_under_lakes_and_all_areas_arrive(worn):
 
 @pytest.mark.slow
 def test_rivers_of_a_coarse_grid_are_those_of_the_fine_one(engine, make_sketch):
-    passes = (
-        PASSES.replace("[[pass]]", '[[pass]]\nsize = "(size.x - 1) // 2 + 1"')
-        + """
-[[pass]]
-name = "finer"
-use = "water/levels/finer"
-set = { winding = 1.0 }
-[pass.inputs]
-start = "low"
-coarse = "rivers:height"
-coarse_receiver = "rivers:receiver"
-coarse_level = "rivers:height"
-"""
+    body = PASSES.replace("[[pass]]", '[[pass]]\nsize = "(size.x - 1) // 2 + 1"') + passes(
+        finer=(
+            "water/levels/finer",
+            "set = { winding = 1.0 }",
+            "[pass.inputs]",
+            'start = "low"',
+            'coarse = "rivers:height"',
+            'coarse_receiver = "rivers:receiver"',
+            'coarse_level = "rivers:height"',
+        )
     )
     for size in (65, 66):
-        sketch = make_sketch(passes, size=size, extent=EXTENT, relief=RELIEF, low=LOW)
+        sketch = make_sketch(body, size=size, extent=EXTENT, relief=RELIEF, low=LOW)
         coarse, way = engine.read(sketch, "rivers:height").copy(), engine.read(sketch, "rivers:receiver")
         fine, ways = engine.read(sketch, "finer:height").copy(), engine.read(sketch, "finer:receiver")
         np.testing.assert_array_equal(fine[2:-2:2, 2:-2:2][:31, :31], coarse[1:-1, 1:-1])
@@ -205,8 +186,8 @@ def test_hardness_divides_erodibility_and_uplift_multiplies_rate(worn):
     two = '[[pass]]\nname = "two"\nuse = "./two"\nsize = 5\n' + PASSES
     hard = two.replace('inputs = { height = "low" }', factor.replace("INPUT", "hardness"))
     lifted = two.replace('inputs = { height = "low" }', factor.replace("INPUT", "uplift"))
-    for passes, same in ((hard, {"erodibility": 4.0}), (lifted, {"rise": 1.0})):
-        result, *_ = worn(65, passes=passes, **values)
+    for body, same in ((hard, {"erodibility": 4.0}), (lifted, {"rise": 1.0})):
+        result, *_ = worn(65, body=body, **values)
         expected, *_ = worn(65, **{**values, **same})
         assert np.median(np.abs(result - expected)) < 0.01
         assert np.abs(expected - worn(65, **values)[0]).mean() > 10
@@ -233,16 +214,14 @@ def test_turned_terrain_wears_turned(worn):
 @pytest.mark.parametrize("share", [0.1, 0.5, 3.0])
 def test_a_checkerboard_on_a_hillside_decays_as_theory_says(engine, make_sketch, share):
     """By hand: of its nine points a step leaves (1 - 2 r) / (1 + 10 r / 3), r = D dt / spacing^2."""
-    passes = """
-[[pass]]
-name = "board"
-use = "./board"
-[[pass]]
-name = "worn"
-use = "erosion/stream_power/hillside"
-inputs = { link = "board" }
-set = { age = 1.0, steps = 1, slides = SLIDES, steepest = 89.0, creep = CREEP }
-"""
+    body = passes(
+        board="./board",
+        worn=(
+            "erosion/stream_power/hillside",
+            'inputs = { link = "board" }',
+            "set = { age = 1.0, steps = 1, slides = SLIDES, steepest = 89.0, creep = CREEP }",
+        ),
+    )
     board = """
 #pragma kernel(output = "link:rgba32f")
 vec4 kernel(ivec2 texel) { return vec4((texel.x + texel.y) % 2 == 0 ? 0.51 : 0.49, 0.0, 0.0, 0.0); }
@@ -250,7 +229,7 @@ vec4 kernel(ivec2 texel) { return vec4((texel.x + texel.y) % 2 == 0 ? 0.51 : 0.4
     sign = (-1.0) ** np.add(*np.mgrid[:41, :41])
     for slides in (1, 4):
         creep = share * slides * 400.0**2 / 1e6
-        text = passes.replace("SLIDES", str(slides)).replace("CREEP", str(creep))
+        text = body.replace("SLIDES", str(slides)).replace("CREEP", str(creep))
         sketch = make_sketch(text, size=41, extent=16000.0, relief=RELIEF, board=board)
         left = ((engine.read(sketch, "worn").astype(float) - 0.5) * sign)[15:-15, 15:-15] / 0.01
         np.testing.assert_allclose(left, ((1 - 2 * share) / (1 + 10 * share / 3)) ** slides, atol=2e-5)
@@ -304,22 +283,12 @@ def test_hostile_parameters_give_numbers(worn, hostile, extent):
     assert edge_of(height.shape).ravel()[ends_of(receiver)].all()
 
 
-REAL = """
-[[pass]]
-name = "height"
-use = "generation/heightmap"
-set = { elevation = "real.npz" }
-[[pass]]
-name = "fill"
-use = "water/fill"
-[[pass]]
-name = "down"
-use = "water/directions"
-inputs = { height = "fill" }
-[[pass]]
-name = "area"
-use = "water/accumulation"
-"""
+REAL = passes(
+    height=("generation/heightmap", 'set = { elevation = "real.npz" }'),
+    fill="water/fill",
+    down=("water/directions", 'inputs = { height = "fill" }'),
+    area="water/accumulation",
+)
 
 
 @pytest.mark.slow

@@ -10,25 +10,19 @@ import pytest
 
 from playground.sketch.model import Camera
 
+from ..sketch_texts import passes
+
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 PLAIN = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ return vec4({}, 1.0); }}\n'
-PASSES = """
-[[pass]]
-name = "height"
-use = "./terrain"
-[[pass]]
-name = "colour"
-use = "./cover"
-[[pass]]
-name = "detail"
-use = "./{}"
-size = 8
-[view]
+PASSES = (
+    passes(height="./terrain", colour="./cover", detail=("./{}", "size = 8"))
+    + """[view]
 use = "view/terrain"
 samples = 1
 {}
 set = {{ {} }}
 """
+)
 COVER = "vec3(0.2, 0.4, 0.1)"
 FINE = PLAIN.format("vec3(0.25 + 0.5 * float((texel.x * 5 + texel.y * 3) % 8) / 7.0)")
 CAMERA = Camera(azimuth=180.0, elevation=35.0, distance=500.0, target=(500.0, 400.0, 0.0))

@@ -5,31 +5,24 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ..sketch_texts import passes
+
 RAMP = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 IMAGE = """#include "noise/hash.glsl"
 #pragma kernel(output = "colour:rgba16f")
 vec4 kernel(ivec2 texel) {{ return vec4(random_pair(texel, {}u), random(texel, {}u), 1.0); }}
 """
 FILES = {"one": IMAGE.format(1, 2), "other": IMAGE.format(3, 4)}
-PASSES = """
-[[pass]]
-name = "height"
-use = "./terrain"
-size = 9
-[[pass]]
-name = "one"
-use = "./one"
-size = 8
-[[pass]]
-name = "other"
-use = "./other"
-size = 16
-[[pass]]
-name = "colour"
-use = "texturing/multitexture"
-inputs = {{ "units.first" = "one", "units.second" = "other" }}
-set = {{ {} }}
-"""
+PASSES = passes(
+    height=("./terrain", "size = 9"),
+    one=("./one", "size = 8"),
+    other=("./other", "size = 16"),
+    colour=(
+        "texturing/multitexture",
+        'inputs = {{ "units.first" = "one", "units.second" = "other" }}',
+        "set = {{ {} }}",
+    ),
+)
 SIZE = 65
 GIVEN = {
     "first_repeats": 3.0, "first_turn": 0.0, "first_shift": [0.25, 0.5],

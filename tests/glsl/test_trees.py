@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ..sketch_texts import passes
+
 SLOPE = """
 #include "maths/land.glsl"
 #pragma kernel(output = "height:r32f, density:r32f")
@@ -15,27 +17,28 @@ void kernel(ivec2 texel, out float height, out float density) {
     density = most * share.x * (1.0 - 0.7 * share.y);
 }
 """
-PASSES = """
-[[pass]]
-name = "ground"
-use = "./ground"
-[[pass]]
-name = "trees"
-use = "trees/place"
-inputs = {{ height = "ground:height", density = "ground:density" }}
-set = {{ {values} }}
-[view]
+PASSES = (
+    passes(
+        ground="./ground",
+        trees=(
+            "trees/place",
+            'inputs = {{ height = "ground:height", density = "ground:density" }}',
+            "set = {{ {values} }}",
+        ),
+    )
+    + """[view]
 use = "view/terrain"
 camera = {{ azimuth = {azimuth}, elevation = 20.0, distance = 300.0, target = [{x}, {y}, 50.0] }}
 """
+)
 EXTENT = (2600.0, 1500.0)  # of 53 x 41 texels: unequal spacing
 EVERY = "all_round = true, whole = 10000, reach = 4000, trees = 200000"
 CELL = 9.0
 
 
 def placed(make_sketch, values=EVERY, azimuth=200.0, at=(1300.0, 700.0)):
-    passes = PASSES.format(values=values, azimuth=azimuth, x=at[0], y=at[1])
-    return make_sketch(passes, size=[53, 41], extent=list(EXTENT), relief=120.0, ground=SLOPE)
+    body = PASSES.format(values=values, azimuth=azimuth, x=at[0], y=at[1])
+    return make_sketch(body, size=[53, 41], extent=list(EXTENT), relief=120.0, ground=SLOPE)
 
 
 def table(engine, sketch, **options):
@@ -83,8 +86,8 @@ def test_none_stands_in_water_and_all_others_stay(kept, ctx, make_sketch, level)
     """The ground is 24 to 84 m high; rocks and tufts are placed by the same pass."""
     sea = '[[pass]]\nname = "sea"\nuse = "water/sea"\nsize = 1\nset = {{ sea_level = {level} }}\n'
     wired = PASSES.replace('"ground:density" }}', '"ground:density", water = "sea" }}')
-    passes = (sea + wired).format(level=level, values=EVERY, azimuth=200.0, x=1300.0, y=700.0)
-    sketch = make_sketch(passes, size=[53, 41], extent=list(EXTENT), relief=120.0, ground=SLOPE)
+    body = (sea + wired).format(level=level, values=EVERY, azimuth=200.0, x=1300.0, y=700.0)
+    sketch = make_sketch(body, size=[53, 41], extent=list(EXTENT), relief=120.0, ground=SLOPE)
     every = table(kept, placed(make_sketch))[0]
     dry = rows(every[every[:, 2] > level])
     assert len(dry) > 1000
@@ -196,17 +199,10 @@ void kernel(ivec2 at, out float height, out float a_wetness, out vec4 a_weights,
     a_paths = at.x == 20 ? 1.0 : 0.0;
 }
 """
-DENSITY = """
-[[pass]]
-name = "ground"
-use = "./plane"
-set = {{ slope = {slope} }}
-[[pass]]
-name = "density"
-use = "trees/density"
-inputs = {{ height = "ground:height"{wired} }}
-set = {{ {values} }}
-"""
+DENSITY = passes(
+    ground=("./plane", "set = {{ slope = {slope} }}"),
+    density=("trees/density", 'inputs = {{ height = "ground:height"{wired} }}', "set = {{ {values} }}"),
+)
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
+from ..sketch_texts import passes
 from .shadows import shadows_of
 
 FIELD = np.array([1 / 150.0, 4.5, 7.0, 9.0])  # trees a square metre, half width, half height, middle
@@ -60,17 +61,15 @@ void kernel(ivec2 texel, out float height, out float density, out vec4 colour) {
     colour = vec4(0.16, 0.14, 0.06, 1.0);
 }
 """
-STAND = """
-[[pass]]
-name = "flat"
-use = "./flat"
-set = {{ most = {most}, slope = {slope} }}
-[view]
+STAND = (
+    passes(flat=("./flat", "set = {{ most = {most}, slope = {slope} }}"))
+    + """[view]
 use = "scene/terrain"
 camera = {{ azimuth = 70.0, elevation = {elevation}, distance = {distance}, target = [8000, 8000, 2000] }}
 inputs = {{ height = "flat:height", density = "flat:density", colour = "flat:colour" }}
 set = {{ sun = {sun}, gain = 2.0, ambient = 0.6, trees = {trees}, detail = "full grid", grid = 2{value} }}
 """
+)
 
 
 def stand(
@@ -83,16 +82,16 @@ def stand(
     slope=0.0,
     trees=200000,
     value="",
-    passes="",
+    tables="",
     shown="view.shaded",
     **files,
 ):
     """Return what the eye sees of a stand on a plain: about 300 m of it, or 5 degrees."""
     value = value and f", {value}"
     text = STAND.format(
-        **{k: v for k, v in locals().items() if k not in ("engine", "make_sketch", "passes", "files")}
+        **{k: v for k, v in locals().items() if k not in ("engine", "make_sketch", "tables", "files")}
     )
-    sketch = make_sketch(passes + text, size=3, extent=16000.0, relief=4000.0, flat=FLAT, **files)
+    sketch = make_sketch(tables + text, size=3, extent=16000.0, relief=4000.0, flat=FLAT, **files)
     lens = max(np.degrees(2 * np.arctan(75.0 / distance)), 5.0)
     sketch = sketch.with_camera(replace(sketch.camera, field_of_view=lens))
     return engine.read(sketch, shown, size=(320, 180)).copy()
@@ -144,24 +143,22 @@ void kernel(ivec2 texel, out vec4 tree, out float total) {
     total = 3.0;
 }
 """
-SHADE = """
-[[pass]]
-name = "list"
-use = "./list"
-size = [3, 1]
-[[pass]]
-name = "shade"
-use = "trees/shade"
-size = 512
-inputs = {{ tree = "list:tree", total = "list:total" }}
-set = {{ sun = [{azimuth}, {elevation}], shade_wide = 256 }}
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[view]
+SHADE = (
+    passes(
+        list=("./list", "size = [3, 1]"),
+        shade=(
+            "trees/shade",
+            "size = 512",
+            'inputs = {{ tree = "list:tree", total = "list:total" }}',
+            "set = {{ sun = [{azimuth}, {elevation}], shade_wide = 256 }}",
+        ),
+        height="generation/white_noise",
+    )
+    + """[view]
 use = "view/terrain"
 camera = {{ azimuth = 180.0, elevation = 60.0, distance = 2.0, target = [1060.0, 1000.0, 30.0] }}
 """
+)
 
 
 @pytest.mark.parametrize(("azimuth", "elevation"), [(135.0, 50.0), (250.0, 20.0), (0.0, -3.0)])
@@ -215,26 +212,16 @@ void kernel(ivec2 texel, out float height, out float density) {
     density = share.x < 0.4 && share.y > 0.3 ? 0.9 : 0.0;
 }
 """
-CANOPY = """
-[[pass]]
-name = "wood"
-use = "./wood"
-[[pass]]
-name = "canopy"
-use = "trees/canopy"
-inputs = { bare = "wood:height", density = "wood:density" }
-set = { needles = 0 }
-[[pass]]
-name = "plain"
-use = "lighting/ray_cast"
-inputs = { height = "wood:height" }
-set = { sun = [270, 11] }
-[[pass]]
-name = "wooded"
-use = "lighting/ray_cast"
-inputs = { height = "canopy:height" }
-set = { sun = [270, 11] }
-"""
+CANOPY = passes(
+    wood="./wood",
+    canopy=(
+        "trees/canopy",
+        'inputs = { bare = "wood:height", density = "wood:density" }',
+        "set = { needles = 0 }",
+    ),
+    plain=("lighting/ray_cast", 'inputs = { height = "wood:height" }', "set = { sun = [270, 11] }"),
+    wooded=("lighting/ray_cast", 'inputs = { height = "canopy:height" }', "set = { sun = [270, 11] }"),
+)
 
 
 @pytest.mark.slow
@@ -291,25 +278,14 @@ void kernel(ivec2 texel, out float height, out float density, out vec4 colour) {
     colour = vec4(0.5, 0.5, 0.5, 1.0);
 }
 """
-MEADOW = """
-[[pass]]
-name = "edge"
-use = "./edge"
-[[pass]]
-name = "canopy"
-use = "trees/canopy"
-inputs = {{ bare = "edge:height", density = "edge:density" }}
-[[pass]]
-name = "bare"
-use = "lighting/ray_cast"
-inputs = {{ height = "edge:height" }}
-set = {{ sun = [275, 16] }}
-[[pass]]
-name = "high"
-use = "lighting/ray_cast"
-inputs = {{ height = "canopy:height" }}
-set = {{ sun = [275, 16] }}
-[view]
+MEADOW = (
+    passes(
+        edge="./edge",
+        canopy=("trees/canopy", 'inputs = {{ bare = "edge:height", density = "edge:density" }}'),
+        bare=("lighting/ray_cast", 'inputs = {{ height = "edge:height" }}', "set = {{ sun = [275, 16] }}"),
+        high=("lighting/ray_cast", 'inputs = {{ height = "canopy:height" }}', "set = {{ sun = [275, 16] }}"),
+    )
+    + """[view]
 use = "scene/terrain"
 samples = 1
 camera = {{ azimuth = 150.0, elevation = 55.0, distance = 100.0, target = [280.0, 190.0, 6.0] }}
@@ -322,6 +298,7 @@ colour = "edge:colour"
 visibility = "bare.visibility"
 canopy_visibility = "high.visibility"
 """
+)
 
 
 def meadow_sun(engine, make_sketch, wide):
@@ -379,8 +356,8 @@ def test_leaves_have_the_season_of_the_daylight(kept, ctx, make_sketch, day, fro
     """One day for sun and leaves: daylight counts from 1, the parameter of trees from 0."""
     daylight = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ day = {day} }}\n'
     by_sun, by_hand = (
-        stand(kept, make_sketch, distance, passes=passes, value=value, shown="view.wooded:albedo")
-        for passes, value in ((daylight, ""), ("", f"day = {from_zero}"))
+        stand(kept, make_sketch, distance, tables=tables, value=value, shown="view.wooded:albedo")
+        for tables, value in ((daylight, ""), ("", f"day = {from_zero}"))
     )
     np.testing.assert_array_equal(by_sun, by_hand)
 
@@ -391,7 +368,7 @@ HALF = '#pragma kernel(output = "dark:r16f")\nfloat kernel(ivec2 at) { return at
 def test_a_shadow_of_the_sketch_falls_on_ground_and_trees(kept, ctx, make_sketch):
     """Where it takes nothing all stays; where it takes all, only the light of the sky is left."""
     shadow = '[[pass]]\nname = "shadow"\nuse = "./half"\nsize = [320, 180]\n'
-    halved = stand(kept, make_sketch, 1000.0, passes=shadow, half=HALF)
+    halved = stand(kept, make_sketch, 1000.0, tables=shadow, half=HALF)
     free = stand(kept, make_sketch, 1000.0)
     sky = stand(kept, make_sketch, 1000.0, value='sun_colour = "#000000"')
     np.testing.assert_array_equal(halved[:, :160], free[:, :160])

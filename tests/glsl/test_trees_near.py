@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from ..sketch_texts import passes
+
 LIST = """
 #pragma kernel(output = "tree:rgba32f, total:r32f, species:rgba8")
 void kernel(ivec2 texel, out vec4 tree, out float total, out vec4 species) {
@@ -11,31 +13,30 @@ void kernel(ivec2 texel, out vec4 tree, out float total, out vec4 species) {
     species = vec4(SHARES);
 }
 """
-PASSES = """
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[[pass]]
-name = "list"
-use = "./list"
-size = [64, 1]
-[[pass]]
-name = "body"
-use = "trees/seen"
-size = [480, 360]
-inputs = {{ tree = "list:tree", total = "list:total", species = "list:species" }}
-set = {{ near = {near} }}
-[[pass]]
-name = "seen"
-use = "trees/foliage"
-size = [480, 360]
-inputs = {{ tree = "list:tree", total = "list:total", species = "list:species", initial = "body" }}
-set = {{ near = {near} }}
-[view]
+LISTED = 'inputs = {{ tree = "list:tree", total = "list:total", species = "list:species" }}'
+PASSES = (
+    passes(
+        height="generation/white_noise",
+        list=("./list", "size = [64, 1]"),
+        body=(
+            "trees/seen",
+            "size = [480, 360]",
+            LISTED,
+            "set = {{ near = {near} }}",
+        ),
+        seen=(
+            "trees/foliage",
+            "size = [480, 360]",
+            LISTED.replace(" }}", ', initial = "body" }}'),
+            "set = {{ near = {near} }}",
+        ),
+    )
+    + """[view]
 use = "view/terrain"
 camera = {{ azimuth = {azimuth}, elevation = 14.0, distance = {distance}, target = [308.0, 315.0, 14.0], \
 field_of_view = 60.0 }}
 """
+)
 SPECIES = {
     "oaks": "0.0",
     "maples": "1.0, 0.0, 0.0, 0.0",
@@ -48,9 +49,9 @@ SUN = np.array([0.6, -0.5, 0.62])
 
 def drawn(engine, make_sketch, near, species="oaks", azimuth=200.0, distance=120.0):
     """Return the fraction of pixels with a tree, and the mean light of sun on those."""
-    passes = PASSES.format(near=near, azimuth=azimuth, distance=distance)
+    text = PASSES.format(near=near, azimuth=azimuth, distance=distance)
     listed = LIST.replace("SHARES", SPECIES[species])
-    sketch = make_sketch(passes, size=33, extent=620.0, relief=1.0, list=listed)
+    sketch = make_sketch(text, size=33, extent=620.0, relief=1.0, list=listed)
     number = engine.read(sketch, "seen", size=(480, 360))[..., 3].astype(np.float64)
     there = number >= 4
     bits = (number[there] - 4).astype(int) // 64

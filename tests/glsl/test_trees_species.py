@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from ..sketch_texts import passes
+
 DAYS = np.arange(0, 366, 5, dtype=np.float32)
 BROAD, NEEDLES = (0, 1, 2), (4, 5)
 
@@ -61,21 +63,11 @@ def test_leaves_send_no_more_light_all_round_than_falls_on_them(on_gpu):
 
 
 LEVEL = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 at) { return 0.5; }\n'
-MAP = """
-[[pass]]
-name = "height"
-use = "./level"
-[[pass]]
-name = "species"
-use = "trees/species"
-size = [{size}, {size}]
-set = {{ {values} }}
-[[pass]]
-name = "leaves"
-use = "trees/leaves"
-size = [25, 54]
-set = {{ day = 290 }}
-"""
+MAP = passes(
+    height="./level",
+    species=("trees/species", "size = [{size}, {size}]", "set = {{ {values} }}"),
+    leaves=("trees/leaves", "size = [25, 54]", "set = {{ day = 290 }}"),
+)
 
 
 def shares(engine, make_sketch, values, size=257):
@@ -108,16 +100,14 @@ void kernel(ivec2 at, out float height, out float wetness) {
     wetness = at.x > 32 ? 1.0 : 0.0;
 }
 """
-FACING = """
-[[pass]]
-name = "hill"
-use = "./hill"
-[[pass]]
-name = "species"
-use = "trees/species"
-inputs = {{ height = "hill:height" {wired} }}
-set = {{ patchy = 0.0, needles = 0.0 }}
-"""
+FACING = passes(
+    hill="./hill",
+    species=(
+        "trees/species",
+        'inputs = {{ height = "hill:height" {wired} }}',
+        "set = {{ patchy = 0.0, needles = 0.0 }}",
+    ),
+)
 
 
 def test_maples_stand_where_it_is_moist_and_oaks_where_it_is_dry(kept, ctx, make_sketch):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from ..sketch_texts import passes
 from .shadows import shadows_of
 from .test_trees import DENSITY, PLANE
 
@@ -46,24 +47,18 @@ void kernel(ivec2 at, out float height, out float band, out vec4 layers, out vec
     brown = vec4(0.12, 0.10, 0.05, 1.0);
 }
 """
-ON_PATH = """
-[[pass]]
-name = "land"
-use = "./path"
-[[pass]]
-name = "density"
-use = "trees/density"
-inputs = {{ height = "land:height", {wired} }}
-[[pass]]
-name = "rocks"
-use = "objects/scree"
-inputs = {{ height = "land:height", {wired} }}
-set = {{ strewn = 1.0, heaps = 0.0 }}
-[[pass]]
-name = "tufts"
-use = "trees/density"
-inputs = {{ height = "land:height", {wired} }}
-[view]
+ON_PATH = (
+    passes(
+        land="./path",
+        density=("trees/density", 'inputs = {{ height = "land:height", {wired} }}'),
+        rocks=(
+            "objects/scree",
+            'inputs = {{ height = "land:height", {wired} }}',
+            "set = {{ strewn = 1.0, heaps = 0.0 }}",
+        ),
+        tufts=("trees/density", 'inputs = {{ height = "land:height", {wired} }}'),
+    )
+    + """[view]
 use = "scene/terrain"
 samples = 1
 inputs = {{ height = "land:height", colour = "land:brown"{view} }}
@@ -71,6 +66,7 @@ camera = {{ azimuth = 180.0, elevation = {elevation}, distance = 20.0, target = 
 field_of_view = 60.0 }}
 set = {{ sun = [{sun}, 35], detail = "full grid", grid = 2, gain = 1.0, ambient = 0.3, haze = 0.0{values} }}
 """
+)
 ALL = ', density = "density", rocks = "rocks", tufts = "tufts:density"'
 
 
@@ -113,29 +109,27 @@ void kernel(ivec2 texel, out vec4 tree, out float total) {
     total = 3.0;
 }
 """
-SHADE = """
-[[pass]]
-name = "list"
-use = "./list"
-size = [3, 1]
-[[pass]]
-name = "shade"
-use = "objects/shade"
-size = 512
-inputs = {{ tree = "list:tree", total = "list:total" }}
-set = {{ sun = [{azimuth}, {elevation}], rock_shade_wide = 32 }}
-[[pass]]
-name = "seen"
-use = "objects/boulders"
-size = [400, 300]
-inputs = {{ tree = "list:tree", total = "list:total" }}
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[view]
+SHADE = (
+    passes(
+        list=("./list", "size = [3, 1]"),
+        shade=(
+            "objects/shade",
+            "size = 512",
+            'inputs = {{ tree = "list:tree", total = "list:total" }}',
+            "set = {{ sun = [{azimuth}, {elevation}], rock_shade_wide = 32 }}",
+        ),
+        seen=(
+            "objects/boulders",
+            "size = [400, 300]",
+            'inputs = {{ tree = "list:tree", total = "list:total" }}',
+        ),
+        height="generation/white_noise",
+    )
+    + """[view]
 use = "view/terrain"
 camera = {{ azimuth = 180.0, elevation = 60.0, distance = 24.0, target = [106.0, 100.0, 5.0] }}
 """
+)
 
 
 @pytest.mark.parametrize(("azimuth", "elevation"), [(135.0, 50.0), (250.0, 20.0), (0.0, -3.0)])

@@ -8,6 +8,7 @@ import pytest
 from playground.engine.textures import read_texture
 from playground.sketch.model import Camera
 
+from ..sketch_texts import passes
 from .test_splat_view import BILINEAR, COLOUR, FLAT, HEIGHT, HILLS, SUN, TERRAIN, VIEW, WEIGHTS, real_terrain
 
 SIZE = (240, 150)
@@ -15,7 +16,7 @@ LOOKS = [
     Camera(azimuth=azimuth, elevation=elevation, distance=1500, target=(500, 500, 0))
     for azimuth, elevation in ((200, 35), (20, 60), (110, 12))
 ]
-GROUND = '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "ground"\nuse = "view/ground"\n'
+GROUND = passes(height="./terrain", ground="view/ground")
 GROUND += "size = [160, 100]\nset = { grid = 9 }\n[view]\nsamples = 1\n"
 READ = GROUND.replace("[view]", '[[pass]]\nname = "place"\nuse = "./place"\nsize = [160, 100]\n[view]')
 PLACE = """
@@ -31,10 +32,8 @@ vec4 fragment(vec3 ray) {
     return vec4(seen.place, seen.eye_distance, seen.mark);
 }
 """
-TERRAIN_VIEW = (
-    '[[pass]]\nname = "height"\nuse = "generation/diamond_square"\n'
-    '[[pass]]\nname = "colour"\nuse = "./colour"\nsize = 257\n'
-    '[[pass]]\nname = "light"\nuse = "lighting/l_dot_n"\n'
+TERRAIN_VIEW = passes(
+    height="generation/diamond_square", colour=("./colour", "size = 257"), light="lighting/l_dot_n"
 )
 GRAINS = '#include "noise/hash.glsl"\n' + COLOUR.partition("\n")[2].format(
     "vec4(vec3(0.2 + 0.6 * random(texel / 4, 3u)), 1.0)"

@@ -16,6 +16,7 @@ from playground.paths import GLSL
 from playground.sketch.model import Camera
 
 from ..elevations import spans_of_tiles
+from ..sketch_texts import passes
 
 TERRAIN = """#include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")
@@ -44,17 +45,11 @@ vec4 vertex(vec3 corner, vec4 tile, out float up, out float level) {
 }
 vec4 fragment(float up, float level) { return vec4(up, level, 1.0, 1.0); }
 """
-PASSES = '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "colour"\nuse = "./green"\n'
-TILES = """[[pass]]
-name = "tiles"
-use = "view/geomipmap/errors"
-size = ["(height.size.x + 14) // 16", "(height.size.y + 14) // 16"]
-[[pass]]
-name = "above"
-use = "./above"
-size = [331, 187]
-inputs = { spans = "tiles:spans", errors = "tiles:errors" }
-"""
+PASSES = passes(height="./terrain", colour="./green")
+TILES = passes(
+    tiles=("view/geomipmap/errors", 'size = ["(height.size.x + 14) // 16", "(height.size.y + 14) // 16"]'),
+    above=("./above", "size = [331, 187]", 'inputs = { spans = "tiles:spans", errors = "tiles:errors" }'),
+)
 VIEW = """[view]
 use = "view/terrain"
 samples = 1

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ..sketch_texts import passes
+
 INDEX = 1.333
 DISSOLVED = np.array([0.95, 1.0, 1.35])
 
@@ -74,16 +76,7 @@ vec4 kernel(ivec2 texel) {
     return vec4(found.slope, found.variance, sea.variance);
 }
 """
-PASSES = """
-[[pass]]
-name = "waves"
-use = "water/wave_table"
-size = [26, 2]
-[[pass]]
-name = "slopes"
-use = "./probe"
-size = 78
-"""
+PASSES = passes(waves=("water/wave_table", "size = [26, 2]"), slopes=("./probe", "size = 78"))
 
 
 @pytest.fixture
