@@ -4,45 +4,27 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from playground.sketch.model import Sketch
 
-from ..loading import load
+from ..sketch_texts import passes as passes_of_uses
+from ..sketch_texts import use
 from ..truth.land import Land
-from ..truth.methods import relief_of, written
+from ..truth.methods import sketch_of
 
 
 def lit_by(
-    folder: Path, terrain: Land, name: str, use: str, *, passes: str = "", size: str = "", **values: object
+    folder: Path,
+    terrain: Land,
+    name: str,
+    technique: str,
+    *,
+    passes: str = "",
+    size: object = None,
+    **values: object,
 ) -> Sketch:
     """Write and load a sketch of a terrain, lit by one technique of ``lighting/`` as the pass ``name``."""
-    ny, nx = terrain.heights.shape
-    relief = relief_of(terrain)
-    np.save(folder / "land.npy", ((terrain.heights - terrain.heights.min()) / relief).astype(np.float32))
-    setting = "".join(f"{key} = {written(value)}\n" for key, value in values.items())
-    extent = [(n - 1) * metres for n, metres in zip((nx, ny), terrain.spacing, strict=True)]
-    path = folder / "sketch.toml"
-    path.write_text(
-        f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
-        '[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
-        'set = { elevation = "land.npy", first_row = "south" }\n'
-        f'{passes}[[pass]]\nname = "{name}"\nuse = "lighting/{use}"\n{size}\n[pass.set]\n{setting}'
-    )
-    return load(path)
-
-
-def toml_value(value: object) -> str:
-    """Return a parameter's value as TOML writes it."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f'"{value}"' if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value)
-
-
-def sun_vector(azimuth: float, elevation: float) -> np.ndarray:
-    """Return the unit vector towards a sun [degrees]: east, north, up."""
-    a, e = np.radians([azimuth, elevation])
-    return np.array([np.cos(e) * np.sin(a), np.cos(e) * np.cos(a), np.sin(e)])
+    light = {name: use(f"lighting/{technique}", size=size, **values)}
+    return sketch_of(folder, terrain, passes + passes_of_uses(**light))
 
 
 # Hills of four sizes, turned or mirrored on request.

@@ -7,7 +7,7 @@ import pytest
 from scipy.ndimage import map_coordinates
 
 from ..sketch_texts import passes
-from .terrains import sun_vector
+from ..truth.land import towards
 from .test_cloud_pictures import BILLOWS, FLAT, NONE, TERRAIN, TOLD, looking, rays
 
 WIDE, BASE, TALL, EXTINCTION, G = 9000.0, 1900.0, 900.0, 0.067, 0.85
@@ -115,7 +115,7 @@ def test_heaps_send_as_much_light_as_photons_do(any_engine, make_sketch, cover, 
 
     The header of ``clouds/heap_light`` has the views that miss it.
     """
-    sun = sun_vector(150.0, elevation)
+    sun = towards(150.0, elevation)
     message = TOLD.replace("vec4(0.0, 0.0, 1.0, 90.0)", f"vec4({sun[0]}, {sun[1]}, {sun[2]}, {elevation})")
     sketch = make_sketch(TERRAIN + SKETCH, flat=FLAT, told=message, none=NONE)
     sketch = sketch.with_values({"cloud.clouds": cover})

@@ -5,8 +5,7 @@ import pytest
 
 from playground.sketch.model import Camera
 
-from ..sketch_texts import passes
-from .terrains import sun_vector, toml_value
+from ..sketch_texts import passes, toml_value
 
 RADIUS = 6360.0
 FLAT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
@@ -181,9 +180,9 @@ def test_without_clouds_it_is_the_sky_and_the_sun(any_engine, outdoors, drawn):
     sketch = looking(outdoors(rest, {"look": LOOK}, sun=[95.0, 12.0], clouds=0.0), 90.0, 8.0)
     result = any_engine.read(sketch, "sky", size=SEEN).astype(np.float64)[..., :3]
     expected = any_engine.read(sketch, "look", size=SEEN).astype(np.float64)[..., :3]
-    towards = rays(any_engine.record.plan.eye)
-    sun = np.arccos(np.clip(towards @ sun_vector(95.0, 12.0), -1, 1))
-    above = (towards[..., 2] > 0.01) & (sun > np.radians(1.5))
+    ahead = rays(any_engine.record.plan.eye)
+    sun = np.arccos(np.clip(ahead @ towards(95.0, 12.0), -1, 1))
+    above = (ahead[..., 2] > 0.01) & (sun > np.radians(1.5))
     np.testing.assert_allclose(result[above], expected[above], rtol=0.03)
     disc = sun == sun.min()  # a pixel is as wide as the sun
     assert (result[disc] > 3 * expected[disc]).all()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ..sketch_texts import passes
-from .terrains import sun_vector
+from ..truth.land import towards
 
 WIDE = 8000.0
 DOT = """
@@ -43,9 +43,9 @@ def test_a_shadow_lies_where_the_sun_s_ray_meets_the_cloud(any_engine, make_sket
     # The dot is what is left: bright, so that its middle can be found on the circle that the tile is.
     y, x = np.mgrid[0:ny, 0:nx] * 2j * np.pi / np.array([ny, nx])[:, None, None]
     middle = np.angle([(result * np.exp(x)).sum(), (result * np.exp(y)).sum()]) / (2 * np.pi) * WIDE
-    towards = sun_vector(*sun)
+    to_sun = towards(*sun)
     up = 2000.0 + 270.0 - 1000.0 * height
-    truth = np.array([0.625, 0.375]) * WIDE + np.array([12.0, -7.0]) * time - towards[:2] / towards[2] * up
+    truth = np.array([0.625, 0.375]) * WIDE + np.array([12.0, -7.0]) * time - to_sun[:2] / to_sun[2] * up
     off = (middle - truth + WIDE / 2) % WIDE - WIDE / 2
     assert np.abs(off).max() < 5.0  # of texels of 40 and 50 m
 

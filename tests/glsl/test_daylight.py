@@ -10,7 +10,8 @@ from playground.sketch.model import Camera, kernels_of
 from playground.sketch.wiring import input_names
 
 from ..loading import library
-from .terrains import sun_vector, toml_value
+from ..sketch_texts import toml_value
+from ..truth.land import towards
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 HEIGHTS = (90.0, 70.0, 45.0, 20.0, 10.0, 5.0, 2.0, 0.5, 0.0, -0.2, -0.5, -1.0, -3.0, -6.0, -9.0, -12.0)
@@ -101,7 +102,7 @@ def test_it_is_as_bright_as_the_almanac_says_from_noon_to_night(any_engine, day)
 def test_the_row_adds_up(any_engine, day):
     for elevation in (60.0, 8.0, -2.0):
         row = row_of(any_engine, under(day(), elevation, 222.0))
-        np.testing.assert_allclose(row[0], [*sun_vector(222.0, elevation), elevation], atol=2e-6 + 1e-6 * 222)
+        np.testing.assert_allclose(row[0], [*towards(222.0, elevation), elevation], atol=2e-6 + 1e-6 * 222)
         assert row[1, 3] == pytest.approx(222.0)
         level = row[1, :3] * max(np.sin(np.radians(elevation)), 0) + row[2, :3]
         np.testing.assert_allclose(row[5, :3], level, rtol=1e-5)
@@ -180,10 +181,10 @@ def test_east_is_bright_in_the_morning_and_west_in_the_evening(any_engine, day):
         sun = row[0, :3]
         light = {}
         for azimuth in (brighter, darker):
-            towards = sun_vector(azimuth, 20.0)
-            aside = towards[:2] @ sun[:2] / np.linalg.norm(towards[:2]) / np.linalg.norm(sun[:2])
+            ahead = towards(azimuth, 20.0)
+            aside = ahead[:2] @ sun[:2] / np.linalg.norm(ahead[:2]) / np.linalg.norm(sun[:2])
             position = np.arccos(np.clip(aside, -1, 1))
-            light[azimuth] = looked_up(dome, *(np.array([v]) for v in (towards[2], position, towards @ sun)))
+            light[azimuth] = looked_up(dome, *(np.array([v]) for v in (ahead[2], position, ahead @ sun)))
         assert light[brighter][0] @ LUMINANCE > 1.4 * (light[darker][0] @ LUMINANCE)
 
 
@@ -419,7 +420,7 @@ def test_sun_disc_is_at_sun_direction_and_half_a_degree_wide(any_engine, outdoor
     result = any_engine.read(sketch, "view.sky", size=size)[..., 0].astype(np.float64)
     plan = any_engine.record.plan
     assert plan is not None
-    far = np.asarray(plan.eye.position, np.float64) + 1e7 * sun_vector(*sun)
+    far = np.asarray(plan.eye.position, np.float64) + 1e7 * towards(*sun)
     clip = plan.eye.clip_from_world.astype(np.float64) @ [*far, 1.0]
     column, row = (clip[:2] / clip[3] + 1) / 2 * size
     y, x = np.mgrid[0 : size[1], 0 : size[0]] + 0.5
@@ -440,13 +441,13 @@ def test_the_sky_behind_the_terrain_is_daylight_s(any_engine, outdoors):
     y, x = np.mgrid[0 : SEEN[1], 0 : SEEN[0]] + 0.5
     clip = np.stack([x / SEEN[0] * 2 - 1, y / SEEN[1] * 2 - 1, np.ones_like(x), np.ones_like(x)], axis=-1)
     away = clip @ np.linalg.inv(eye.clip_from_world.astype(np.float64)).T
-    towards = away[..., :3] / away[..., 3:] - np.asarray(eye.position, np.float64)
-    towards /= np.linalg.norm(towards, axis=-1, keepdims=True)
-    above = towards[..., 2] > 0.02
+    ahead = away[..., :3] / away[..., 3:] - np.asarray(eye.position, np.float64)
+    ahead /= np.linalg.norm(ahead, axis=-1, keepdims=True)
+    above = ahead[..., 2] > 0.02
     sun = row[0]
-    aside = towards[..., :2] @ sun[:2] / np.linalg.norm(towards[..., :2], axis=-1) / np.linalg.norm(sun[:2])
+    aside = ahead[..., :2] @ sun[:2] / np.linalg.norm(ahead[..., :2], axis=-1) / np.linalg.norm(sun[:2])
     turned = np.arccos(np.clip(aside, -1, 1))
-    seen = seen_from(eye.position[2] / 1000, dome, towards[..., 2], turned, towards @ sun)
+    seen = seen_from(eye.position[2] / 1000, dome, ahead[..., 2], turned, ahead @ sun)
     np.testing.assert_allclose(result[above], seen[above], rtol=0.02)
     # Far underfoot it is the ground's colour in all the light there is.
     down = looking(outdoors((180.0, 40.0)), 90.0, 85.0)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from .terrains import toml_value
+from ..sketch_texts import toml_value
 
 INK = "lighting/diagram/ink.glsl"
 LETTERS = "lighting/diagram/letters.glsl"

@@ -12,18 +12,15 @@ import pytest
 
 from playground.engine.engine import Engine
 
-from ..loading import load
+from ..sketch_texts import passes, use
 from ..truth.horizon import horizon
 from ..truth.land import Land, cone, real, valley
+from ..truth.marches import Views
+from ..truth.methods import sketch_of
 
 SUN = 0.53  # [degrees] across: a horizon that is off by as much makes day of night
 ROUNDING = 0.03  # [degrees] of a half float's tangent, wherever it is cut off
 BOUND = float(np.degrees(np.arctan(0.05)))  # that the sweep may be under, on any terrain
-CROP = """
-#pragma kernel(output = "height:r32f")
-uniform sampler2D file; //! input
-float kernel(ivec2 texel) { return texelFetch(file, texel, 0).r; }
-"""
 CHIEF = np.array([0, -45, -90, -135, 180, 135, 90, 45])
 
 
@@ -54,8 +51,9 @@ def marcher(engines):
 def measured(tmp_path):
     """Give ``measured(engine, terrain, **values)``: elevations [degrees] (ny, nx, 8), K, heights [m]."""
 
-    def measure(engine, terrain, *, size="", base=0.0, **values):
-        sketch = sketch_of(tmp_path, terrain, size=size, base=base, **values)
+    def measure(engine, terrain, *, size=None, base=0.0, **values):
+        text = passes(horizons=use("lighting/horizons", size=size, **values))
+        sketch = sketch_of(tmp_path, terrain, text, base=base)
         maps = [engine.read(sketch, f"horizons:{name}") for name in ("ahead", "behind")]
         tangents = np.concatenate(maps, axis=-1).astype(np.float64)
         assert np.isfinite(tangents).all() and tangents.min() >= 0 and tangents.max() <= 60000
@@ -66,46 +64,13 @@ def measured(tmp_path):
     return measure
 
 
-def sketch_of(folder, terrain, *, size="", base=0.0, **values):
-    """Write a sketch of a terrain and its horizons; heights are 0..1 and ``base`` more."""
-    ny, nx = terrain.heights.shape
-    low, relief = terrain.heights.min(), float(np.ptp(terrain.heights)) or 1.0
-    kept = np.pad((terrain.heights - low) / relief, ((0, max(2 - ny, 0)), (0, max(2 - nx, 0))))
-    np.save(folder / "land.npy", (kept + base).astype(np.float32))
-    (folder / "crop.glsl").write_text(CROP)
-    extent = [max(n - 1, 1) * metres for n, metres in zip((nx, ny), terrain.spacing, strict=True)]
-    setting = "".join(
-        f"{k} = {str(v).lower() if isinstance(v, bool) else repr(v)}\n" for k, v in values.items()
-    )
-    path = folder / "sketch.toml"
-    path.write_text(
-        f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
-        f'[[pass]]\nname = "file"\nuse = "generation/heightmap"\nsize = {list(kept.shape[::-1])}\n'
-        'set = { elevation = "land.npy", first_row = "south" }\n'
-        '[[pass]]\nname = "height"\nuse = "./crop"\n'
-        f'[[pass]]\nname = "horizons"\nuse = "lighting/horizons"\n{size}\n[pass.set]\n{setting}'
-    )
-    return load(path)
-
-
-def brute(terrain, azimuth, rows=10**6, beyond=0.5):
+def brute(terrain, azimuth, rows=None, beyond=0.5):
     """Return the horizon's elevation [degrees], every row looked at, all texels at a time, float64.
 
     Rays leave the terrain half a texel beyond its edge, where its heights go on as at the edge.
     """
-    h = terrain.heights
-    ny, nx = h.shape
-    y, x = np.mgrid[0:ny, 0:nx].astype(np.float64)
-    way = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))]) / terrain.spacing
-    way[np.abs(way) < 1e-9] = 0
-    row = 1 / np.abs(way).max()  # [m]
-    best = np.zeros((ny, nx))
-    for k in range(1, min(max(nx, ny), rows + 1)):
-        px, py = x + k * row * way[0], y + k * row * way[1]
-        on = (px >= -beyond) & (py >= -beyond) & (px <= nx - 1 + beyond) & (py <= ny - 1 + beyond)
-        there = terrain.at(np.clip(px, 0, nx - 1), np.clip(py, 0, ny - 1))
-        best = np.where(on, np.maximum(best, (there - h) / (k * row)), best)
-    return np.degrees(np.arctan(best))
+    views = Views(terrain.heights, azimuth, terrain.spacing, beyond=beyond)
+    return np.degrees(np.arctan(views.tangents(rows)))
 
 
 def brute_from(terrain, y, x, azimuth):
@@ -440,7 +405,7 @@ def test_a_finer_pass_agrees_where_they_meet(engines, measured):
     terrain = real(33)
     for engine in engines:
         same = measured(engine, terrain)
-        fine = measured(engine, terrain, size='size = ["2 * size.x - 1", "2 * size.y - 1"]')
+        fine = measured(engine, terrain, size=("2 * size.x - 1", "2 * size.y - 1"))
         np.testing.assert_allclose(fine[2][::2, ::2], same[2], atol=1e-6)
         # Looked at twice as closely, horizons are higher, by little; but what rays see beyond the
         # terrain's edge, half a texel of it, is less.

@@ -10,7 +10,9 @@ import pytest
 from scipy.ndimage import map_coordinates
 
 from ..sketch_texts import passes
-from .terrains import HILLS, sun_vector
+from ..truth.land import towards
+from ..truth.marches import Views
+from .terrains import HILLS
 
 HALF = 2.0**-11
 BOTH = pytest.mark.parametrize("method", ["l_dot_n", "ray_cast"])
@@ -44,21 +46,6 @@ def shade(heights, sun, spacing):
     return np.maximum((normal @ sun) / np.linalg.norm(normal, axis=-1), 0)
 
 
-def clearance(heights, sun, spacing, step_length=1.0):
-    """Return how far above the terrain each ray text at its nearest step [m]: no early end, float64."""
-    ny, nx = heights.shape
-    y, x = np.mgrid[0:ny, 0:nx].astype(np.float64)
-    texels = sun[:2] / spacing  # a metre along the ray, in texels
-    length = step_length / np.abs(texels).max()
-    least = np.full(heights.shape, np.inf)
-    for k in range(1, int((nx + ny) / step_length) + 2):
-        px, py, ray = x + k * length * texels[0], y + k * length * texels[1], heights + k * length * sun[2]
-        inside = (px >= -1e-6) & (px <= nx - 1 + 1e-6) & (py >= -1e-6) & (py <= ny - 1 + 1e-6)
-        terrain = map_coordinates(heights, [np.clip(py, 0, ny - 1), np.clip(px, 0, nx - 1)], order=1)
-        least = np.where(inside, np.minimum(least, ray - terrain), least)
-    return least
-
-
 # The sun
 
 
@@ -79,7 +66,7 @@ def test_the_sun_is_a_unit_vector_at_its_angles(on_gpu):
     result = on_gpu("lighting/sun.glsl", "to_sun(place)", place=places).astype(np.float64)
     np.testing.assert_allclose(np.linalg.norm(result, axis=1), 1, atol=1e-6)
     np.testing.assert_allclose(np.degrees(np.arcsin(np.clip(result[:, 2], -1, 1))), places[:, 1], atol=0.03)
-    np.testing.assert_allclose(result, [sun_vector(*p) for p in places.astype(np.float64)], atol=2e-6)
+    np.testing.assert_allclose(result, [towards(*p) for p in places.astype(np.float64)], atol=2e-6)
 
 
 def test_a_normal_is_perpendicular_to_its_slope(on_gpu):
@@ -103,7 +90,7 @@ def test_an_inclined_plane_is_the_cosine_of_its_angle(engine, lit, method, norma
     sketch = lit(PLANE, method, sun, size=[41, 17], extent=[400, 400], given={"rise": rise}, normal=normal)
     light = engine.read(sketch, "light")[..., :3]
     normal = np.cross([1, 0, rise[0] * 100 / 10], [0, 1, rise[1] * 100 / 25])
-    truth = max(0, normal @ sun_vector(*sun) / np.linalg.norm(normal))
+    truth = max(0, normal @ towards(*sun) / np.linalg.norm(normal))
     np.testing.assert_allclose(light, truth, rtol=1.5 * HALF, atol=1e-4)
 
 
@@ -113,7 +100,7 @@ def test_rough_terrain_is_shaded_by_its_own_normals(engine, lit, method, sun):
     sketch = lit(HILLS, method, sun, size=[65, 49], extent=[640, 960], relief=300.0)
     heights = engine.read(sketch, "height").astype(np.float64) * 300
     light = engine.read(sketch, "light").astype(np.float64)
-    truth = shade(heights, sun_vector(*sun), (10.0, 20.0))
+    truth = shade(heights, towards(*sun), (10.0, 20.0))
     inner = light[1:-1, 1:-1]
     np.testing.assert_allclose(inner[..., 0], truth[1:-1, 1:-1] * inner[..., 3], rtol=2 * HALF, atol=1e-3)
     np.testing.assert_allclose(light[..., 0], truth * light[..., 3], rtol=2 * HALF, atol=1e-3)
@@ -129,7 +116,7 @@ def test_the_one_triangle_is_the_thesis_triangle(engine, lit):
         np.stack([flat + 20, flat, south_east - south_west], axis=-1),
         np.stack([flat, flat + 20, north_east - south_east], axis=-1),
     )
-    truth = np.maximum(normal @ sun_vector(*sun) / np.linalg.norm(normal, axis=-1), 0)
+    truth = np.maximum(normal @ towards(*sun) / np.linalg.norm(normal, axis=-1), 0)
     result = engine.read(sketch, "light")[1:-1, 1:-1, 0]
     np.testing.assert_allclose(result, truth, rtol=2 * HALF, atol=1e-3)
 
@@ -187,8 +174,8 @@ def test_shadows_are_those_of_a_slow_march(engine, lit, sun, step_length):
     )
     heights = engine.read(sketch, "height").astype(np.float64) * 300
     visible = engine.read(sketch, "light")[..., 3]
-    direction = sun_vector(*sun)
-    room = clearance(heights, direction, np.array([10.0, 20.0]), step_length)
+    direction = towards(*sun)
+    room = Views(heights, sun[0], (10.0, 20.0), step_length).clearance(sun[1])
     facing = shade(heights, direction, (10.0, 20.0))
     sure = (np.abs(room) > 0.01) & (np.abs(facing) > 1e-4)
     assert sure.mean() > 0.5
@@ -203,8 +190,8 @@ def test_heights_beyond_0_to_1_throw_their_shadows(engine, lit, scale, base):
     sketch = lit(HILLS, "ray_cast", sun, extent=640.0, relief=200.0, given={"scale": scale, "base": base})
     heights = engine.read(sketch, "height").astype(np.float64) * 200
     visible = engine.read(sketch, "light")[..., 3]
-    room = clearance(heights, sun_vector(*sun), np.array([10.0, 10.0]))
-    facing = shade(heights, sun_vector(*sun), (10.0, 10.0)) > 1e-4
+    room = Views(heights, sun[0], (10.0, 10.0)).clearance(sun[1])
+    facing = shade(heights, towards(*sun), (10.0, 10.0)) > 1e-4
     sure = (np.abs(room) > 0.05) & facing
     assert (room[sure] < 0).any()
     np.testing.assert_array_equal(visible[sure] > 0, room[sure] > 0)
@@ -279,7 +266,7 @@ vec4 kernel(ivec2 texel) { return vec4(float(texel.x) * step_of, 1.0); }
     light = engine.read(sketch, "light")
     x = np.broadcast_to(np.arange(9), (9, 9))
     normal = np.array([-0.05 * 50 / 10, -0.02 * 50 / 10, 1.0])
-    received = normal @ sun_vector(200, 40) / np.linalg.norm(normal)
+    received = normal @ towards(200, 40) / np.linalg.norm(normal)
     expected = np.stack(
         [
             1.0 * 1.5 * received * 0.1 * x,
@@ -315,5 +302,5 @@ def test_slopes_between_texels_are_interpolated_from_texels(engine, lit):
     places = np.meshgrid(np.linspace(0, 64, 97), np.linspace(0, 64, 129), indexing="ij")
     slopes = [map_coordinates(s, places, order=1) for s in np.gradient(heights, 10.0)]
     normal = np.stack([-slopes[1], -slopes[0], np.ones_like(slopes[0])], axis=-1)
-    expected = np.maximum(normal @ sun_vector(*sun) / np.linalg.norm(normal, axis=-1), 0)
+    expected = np.maximum(normal @ towards(*sun) / np.linalg.norm(normal, axis=-1), 0)
     np.testing.assert_allclose(engine.read(sketch, "light")[..., 0], expected, rtol=2 * HALF, atol=1e-3)

@@ -8,7 +8,7 @@ import pytest
 
 from playground.sketch.model import Camera
 
-from .terrains import toml_value
+from ..sketch_texts import toml_value
 from .test_air import RADIUS, _often, coefficients, left, profile, sky
 
 FLAT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'

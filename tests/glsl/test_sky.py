@@ -20,7 +20,7 @@ OPEN_SKY = "lighting/horizons/open_sky.glsl"
 def read(ctx, kept, tmp_path):
     """Give ``read(terrain, use, *outputs, **values)``: the outputs of a technique in lighting/, float64."""
 
-    def make(terrain, use, *outputs, passes="", size="", **values):
+    def make(terrain, use, *outputs, passes="", size=None, **values):
         sketch = lit_by(tmp_path, terrain, "under_test", use, passes=passes, size=size, **values)
         result = [kept.read(sketch, f"under_test:{output}").astype(np.float64) for output in outputs]
         assert all(np.isfinite(f).all() for f in result)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from .terrains import sun_vector
+from ..truth.land import towards
 
 FAINTEST, MAGNITUDE_0 = 6.92, 1.98e-11
 
@@ -32,7 +32,7 @@ def test_the_sun_stands_among_the_stars_where_the_almanac_has_it(any_engine, mak
         value = f"year = 2031, day = {day}, hour = {hour}, latitude = {latitude}, longitude = {longitude}, "
         text = f'[[pass]]\nname = "day"\nuse = "lighting/daylight"\nset = {{ {value} clock = "{clock}" }}\n'
         sketch = make_sketch(text)
-        sun = sun_vector(*any_engine.read(sketch, "day.place:place")[0, 0, :2].astype(np.float64))
+        sun = towards(*any_engine.read(sketch, "day.place:place")[0, 0, :2].astype(np.float64))
         _, position, turned, _ = any_engine.read(sketch, "day.place:date")[0, 0].astype(np.float64)
         result = on_gpu("sky/stars.glsl", "celestial_of(d, l, t)", d=sun[None], l=[position], t=[turned])[0]
         ascension, declination = almanac(365 * 31 + 8 + day - 1 + universal / 24 - 0.5)

@@ -7,7 +7,7 @@ import pytest
 from scipy.ndimage import map_coordinates
 
 from ..sketch_texts import passes
-from .shadows import shadows_of
+from ..truth.marches import shadows_of
 
 FIELD = np.array([1 / 150.0, 4.5, 7.0, 9.0])  # trees a square metre, half width, half height, middle
 

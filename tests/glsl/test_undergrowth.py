@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ..sketch_texts import passes
-from .shadows import shadows_of
+from ..truth.marches import shadows_of
 from .test_trees import DENSITY, PLANE
 
 SCREE = DENSITY.replace("trees/density", "objects/scree").replace('name = "density"', 'name = "rocks"')

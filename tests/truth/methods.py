@@ -18,6 +18,8 @@ from playground.paths import GLSL
 from playground.sketch.model import Sketch
 
 from ..loading import load
+from ..sketch_texts import kernel, use
+from ..sketch_texts import passes as write
 from .land import Array, Land
 
 SUN, SKY, BOTH, BOUNCED = "sun", "sky", "sun and sky", "sky and bounces"
@@ -91,20 +93,12 @@ cylinder and the night's cone, whose sun is far wider than the sun; the horizon 
 directions, which rounds off what is between them."""
 
 
-def written(value: object) -> str:
-    """Return a value as TOML writes it."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return f'"{value}"'
-    return str([float(v) for v in value]) if isinstance(value, tuple | list) else str(value)
-
-
-RAISED = """#pragma kernel(output = "height:r32f")
-uniform sampler2D land;     //! input
-uniform float base = 0.0;
-float kernel(ivec2 texel) { return base + texelFetch(land, texel, 0).r; }
-"""
+RAISED = kernel(
+    "base + texelFetch(land, texel, 0).r",
+    "height:r32f",
+    "uniform sampler2D land;     //! input",
+    "uniform float base = 0.0;",
+)
 
 
 def sketch_of(folder: Path, terrain: Land, passes: str, *, base: float = 0.0) -> Sketch:
@@ -119,13 +113,10 @@ def sketch_of(folder: Path, terrain: Land, passes: str, *, base: float = 0.0) ->
     np.save(folder / "terrain.npy", kept.astype(np.float32))
     (folder / "raised.glsl").write_text(RAISED)
     extent = [max(n - 1, 1) * metres for n, metres in zip((nx, ny), terrain.spacing, strict=True)]
+    head = f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
+    file = use("generation/heightmap", size=kept.shape[::-1], elevation="terrain.npy", first_row="south")
     path = folder / "sketch.toml"
-    path.write_text(
-        f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
-        '[[pass]]\nname = "land"\nuse = "generation/heightmap"\n'
-        f'size = {list(kept.shape[::-1])}\nset = {{ elevation = "terrain.npy", first_row = "south" }}\n'
-        f'[[pass]]\nname = "height"\nuse = "./raised"\nset = {{ base = {float(base)} }}\n{passes}'
-    )
+    path.write_text(head + write(land=file, height=use("./raised", base=float(base))) + passes)
     return load(path)
 
 
@@ -139,15 +130,11 @@ def passes_of(method: Method, sun: tuple[float, float] | None = None) -> str:
     values = dict(method.values)
     if sun is not None and method.gives in (SUN, BOTH):
         values |= {"sun": sun, **({method.arc: sun[0]} if method.arc else {})}
+    lit = use(f"lighting/{method.use}", **values)
     if not method.after:
-        return _pass("light", method.use, values)
-    return _pass("given", method.use, values) + _pass("light", method.after, method.after_values, "given")
-
-
-def _pass(name: str, use: str, values: Mapping[str, object], light: str = "") -> str:
-    wires = f'inputs = {{ light = "{light}" }}\n' if light else ""
-    setting = "".join(f"{key} = {written(value)}\n" for key, value in values.items())
-    return f'[[pass]]\nname = "{name}"\nuse = "lighting/{use}"\n{wires}[pass.set]\n{setting}'
+        return write(light=lit)
+    after = use(f"lighting/{method.after}", inputs={"light": "given"}, **method.after_values)
+    return write(given=lit, light=after)
 
 
 def as_read(engine: Engine, sketch: Sketch, terrain: Land) -> Land:
