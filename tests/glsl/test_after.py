@@ -7,6 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from playground.shader.colours import linear_to_srgb
+
 LIGHT = '#pragma kernel(output = "frame:rgba16f")\nuniform float angle = 0.3;\n'
 LIGHT += "vec4 kernel(ivec2 texel) {{ return {}; }}\n"
 # Light of six stops, tinted, with one very bright spot.
@@ -95,7 +97,7 @@ def between(texels, pixels):
 def shown(light):
     """Return light as bytes of sRGB, in float64."""
     value = np.clip(light, 0, 1)
-    return 255 * np.where(value <= 0.0031308, 12.92 * value, 1.055 * value ** (1 / 2.4) - 0.055)
+    return 255 * linear_to_srgb(value)
 
 
 def test_a_picture_is_shown_in_the_order_of_a_camera(any_engine, make_sketch):

@@ -6,6 +6,8 @@ import pytest
 from playground.sketch.model import Camera
 
 from ..sketch_texts import passes, toml_value
+from ..truth.eyes import rays
+from ..truth.land import towards
 
 RADIUS = 6360.0
 FLAT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
@@ -23,15 +25,6 @@ def looking(sketch, azimuth, elevation, target=(500.0, 500.0, 300.0), field=40.0
         azimuth=azimuth + 180, elevation=-elevation, distance=50.0, target=target, field_of_view=field
     )
     return sketch.with_camera(camera)
-
-
-def rays(eye, size=SEEN):
-    nx, ny = size
-    y, x = (np.mgrid[0:ny, 0:nx] + 0.5) / np.array([ny, nx])[:, None, None] * 2 - 1
-    clip = np.stack([x, y, np.ones_like(x), np.ones_like(x)], axis=-1)
-    away = clip @ np.linalg.inv(eye.clip_from_world.astype(np.float64)).T
-    towards = away[..., :3] / away[..., 3:] - np.asarray(eye.position, np.float64)
-    return towards / np.linalg.norm(towards, axis=-1, keepdims=True)
 
 
 @pytest.fixture
@@ -180,7 +173,7 @@ def test_without_clouds_it_is_the_sky_and_the_sun(any_engine, outdoors, drawn):
     sketch = looking(outdoors(rest, {"look": LOOK}, sun=[95.0, 12.0], clouds=0.0), 90.0, 8.0)
     result = any_engine.read(sketch, "sky", size=SEEN).astype(np.float64)[..., :3]
     expected = any_engine.read(sketch, "look", size=SEEN).astype(np.float64)[..., :3]
-    ahead = rays(any_engine.record.plan.eye)
+    ahead = rays(any_engine.record.plan.eye, SEEN)
     sun = np.arccos(np.clip(ahead @ towards(95.0, 12.0), -1, 1))
     above = (ahead[..., 2] > 0.01) & (sun > np.radians(1.5))
     np.testing.assert_allclose(result[above], expected[above], rtol=0.03)
@@ -221,7 +214,7 @@ def test_far_clouds_have_the_colour_of_the_air(any_engine, outdoors, drawn):
     slices = [any_engine.read(sketch, f"air:{name}", size=SEEN) for name in ("scattered", "left")]
     # The farthest slice, 32 x 20 texels of three pixels and 3.2; the horizon is between two of its rows.
     far, left = (each.astype(np.float64)[69:71, 96:, :3].mean(axis=0) for each in slices)
-    rises = rays(any_engine.record.plan.eye)[..., 2]
+    rises = rays(any_engine.record.plan.eye, SEEN)[..., 2]
     assert (np.abs(rises[31:33]) < 1e-3).all()
     columns = slice(1, None, 3)  # in the middles of texels
     result, clear = (each[31:33, columns, :3].mean(axis=0, dtype=np.float64) for each in (result, clear))

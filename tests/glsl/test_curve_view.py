@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from playground.shader.colours import srgb_to_linear
+
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 NAN = "uintBitsToFloat(0x7fc00000u)"
 # A black curve on white, the range over the whole height.
@@ -27,9 +29,7 @@ def picture(make_sketch):
 
 def ink(shown):
     """Return how much of each pixel is covered by black, linear."""
-    encoded = shown[..., 0]
-    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-    return 1 - linear
+    return 1 - srgb_to_linear(shown[..., 0])
 
 
 def middle_of(cover):

@@ -11,6 +11,7 @@ from playground.sketch.wiring import input_names
 
 from ..loading import library
 from ..sketch_texts import toml_value
+from ..truth.eyes import rays
 from ..truth.land import towards
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -438,11 +439,7 @@ def test_the_sky_behind_the_terrain_is_daylight_s(any_engine, outdoors):
     row, dome = dome[0], dome[1:]
     any_engine.render(sketch, size=SEEN)
     eye = any_engine.record.plan.eye
-    y, x = np.mgrid[0 : SEEN[1], 0 : SEEN[0]] + 0.5
-    clip = np.stack([x / SEEN[0] * 2 - 1, y / SEEN[1] * 2 - 1, np.ones_like(x), np.ones_like(x)], axis=-1)
-    away = clip @ np.linalg.inv(eye.clip_from_world.astype(np.float64)).T
-    ahead = away[..., :3] / away[..., 3:] - np.asarray(eye.position, np.float64)
-    ahead /= np.linalg.norm(ahead, axis=-1, keepdims=True)
+    ahead = rays(eye, SEEN)
     above = ahead[..., 2] > 0.02
     sun = row[0]
     aside = ahead[..., :2] @ sun[:2] / np.linalg.norm(ahead[..., :2], axis=-1) / np.linalg.norm(sun[:2])

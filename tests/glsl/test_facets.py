@@ -5,6 +5,9 @@ import pytest
 
 from playground.sketch.model import Camera
 
+from ..truth.eyes import pixels_of
+from ..truth.land import towards
+
 SIDE, RELIEF = 1000.0, 300.0
 PASSES = (
     '[[pass]]\nname = "height"\nuse = "generation/white_noise"\nset = { seed = 3 }\n'
@@ -19,12 +22,6 @@ def sketch_of(make_sketch):
         return sketch.with_camera(Camera(azimuth=160.0, elevation=75.0))
 
     return make
-
-
-def pixels_of(engine, points):
-    """Return where points of the terrain are in the last picture: column and row from the foot."""
-    clip = np.c_[points, np.ones(len(points))] @ engine.record.plan.eye.clip_from_world.astype(float).T
-    return ((clip[:, :2] / clip[:, 3:] + 1) / 2 * engine.record.plan.frame_size).astype(int)
 
 
 def triangles(heights):
@@ -47,8 +44,7 @@ def test_every_facet_has_the_light_of_its_own_normal(any_engine, sketch_of, azim
     heights = any_engine.read(sketch, "height").astype(float)
     any_engine.render(sketch, size=(400, 300))
     frame = any_engine.read(sketch, "view.land", size=(400, 300)).astype(float)
-    a, e = np.radians([azimuth, elevation])
-    sun = np.array([np.sin(a) * np.cos(e), np.cos(a) * np.cos(e), np.sin(e)])
+    plan, sun = any_engine.record.plan, towards(azimuth, elevation)
     shades = []
     for face in triangles(heights):
         normal = np.cross(face[1] - face[0], face[2] - face[0])
@@ -56,7 +52,7 @@ def test_every_facet_has_the_light_of_its_own_normal(any_engine, sketch_of, azim
         direct = max(normal @ sun, 0) if elevation >= 0 else 0
         shades.append(direct + 0.25 * (1 + normal[2]) / 2)
         inside = np.array([face.mean(axis=0), face.T @ [0.6, 0.2, 0.2], face.T @ [0.2, 0.2, 0.6]])
-        for column, row in pixels_of(any_engine, inside):
+        for column, row in pixels_of(plan.eye, inside, plan.frame_size).astype(int):
             np.testing.assert_allclose(frame[row, column, :3], shades[-1], atol=4e-3)
     assert np.std(shades) > 0.01
 

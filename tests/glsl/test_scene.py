@@ -10,6 +10,7 @@ import pytest
 from playground.engine.plan import Window
 from playground.engine.textures import read_picture
 from playground.errors import SketchError
+from playground.shader.colours import srgb_to_linear
 from playground.sketch.model import Camera
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
@@ -262,7 +263,7 @@ def test_bumps_turn_a_pixel_s_slope_and_a_shadow_hides_the_sun(any_engine, scene
     azimuth, elevation = np.radians([100.0, 30.0])
     to_sun = [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)]
     normal = np.array([*-SLOPE, 1.0]) / np.linalg.norm([*SLOPE, 1.0])
-    linear = lambda text: np.array([decoded(int(text[i : i + 2], 16) / 255) for i in (0, 2, 4)])  # noqa: E731
+    linear = lambda text: np.array([srgb_to_linear(int(text[i : i + 2], 16) / 255) for i in (0, 2, 4)])  # noqa: E731
     sky = 0.2 * linear("aaccff")
     expected = 1.5 * linear("ffeedd") * (normal @ np.array(to_sun)) + sky
     np.testing.assert_allclose(frame[top], albedo[top] * expected, rtol=2e-3)
@@ -310,11 +311,6 @@ def test_nothing_lights_up_at_night(any_engine, scene):
     night = any_engine.read(sketch, "view.shaded", size=SIZE)[..., :3]
     noon = any_engine.read(sketch.with_values({"daylight.hour": 12.0}), "view.shaded", size=SIZE)[..., :3]
     assert night.max() < 1e-3 * noon.mean()
-
-
-def decoded(value):
-    """Return the linear value of one encoded as sRGB, both 0..1."""
-    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
 
 
 def test_what_is_no_number_is_marked(any_engine, scene):

@@ -9,6 +9,7 @@ import pytest
 from playground.sketch.model import Camera
 
 from ..sketch_texts import toml_value
+from ..truth.eyes import rays
 from .test_air import RADIUS, _often, coefficients, left, profile, sky
 
 FLAT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
@@ -47,11 +48,7 @@ def slices(engine, sketch, output):
     result = engine.read(sketch, f"air:{output}", size=SEEN).astype(np.float64)[..., :3]
     result = result.reshape(4, 20, 4, 32, 3).transpose(0, 2, 1, 3, 4).reshape(SLICES, 20, 32, 3)
     eye = engine.record.plan.eye
-    y, x = (np.mgrid[0:20, 0:32] + 0.5) / np.array([20, 32])[:, None, None] * 2 - 1
-    clip = np.stack([x, y, np.ones_like(x), np.ones_like(x)], axis=-1)
-    away = clip @ np.linalg.inv(eye.clip_from_world.astype(np.float64)).T
-    towards = away[..., :3] / away[..., 3:] - np.asarray(eye.position, np.float64)
-    return result, towards / np.linalg.norm(towards, axis=-1, keepdims=True), eye.position[2] / 1000
+    return result, rays(eye, (32, 20)), eye.position[2] / 1000
 
 
 def heights(start, rise, way):

@@ -7,9 +7,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from playground.shader.colours import linear_to_srgb
 from playground.sketch.model import Camera
 
 from ..sketch_texts import passes
+from ..truth.eyes import on_level
 
 COLOUR = '#include "noise/hash.glsl"\n#pragma kernel(output = "colour:rgba16f")\n'
 COLOUR += "vec4 kernel(ivec2 texel) {{ return {}; }}\n"
@@ -49,12 +51,8 @@ def test_level_terrain_pixels_mix_layers_by_their_weights(any_engine, make_sketc
         TERRAIN + VIEW.format("view/splat", 1, ""), terrain=HEIGHT.format("0.0"), weights=SPREAD, **FLAT
     )
     result = any_engine.read(above(sketch), "view.land", size=(128, 128))[..., :3].astype(float)
-    rows, columns = np.indices((128, 128)) + 0.5
-    clip = any_engine.record.plan.eye.clip_from_world.astype(float)
-    # Pixels back to the level ground.
-    inverse = np.linalg.inv(clip[np.ix_([0, 1, 3], [0, 1, 3])])
-    position = np.stack([columns / 64 - 1, rows / 64 - 1, np.ones_like(rows)], axis=-1) @ inverse.T
-    x, y = np.moveaxis(position[..., :2] / position[..., 2:] / 1000, -1, 0)
+    position, _ = on_level(any_engine.record.plan.eye, (128, 128))
+    x, y = np.moveaxis(position[..., :2] / 1000, -1, 0)
     inside = (np.abs(x - 0.5) < 0.49) & (np.abs(y - 0.5) < 0.49)
     assert inside.sum() > 2000
     shares = np.stack([x * y, (1 - x) * y, x * (1 - y), (1 - x) * (1 - y)], axis=-1)
@@ -281,7 +279,7 @@ def test_the_parts_are_tiles_over_their_maps_and_the_result(any_engine, make_ske
     )
     # Six parts of 20 pixels, two rows, gaps of 4: 140 by 44, in the middle.
     picture = any_engine.render(sketch, size=(144, 52)).array[..., :3].astype(float)
-    encoded = np.where(LAYERS <= 0.0031308, 12.92 * LAYERS, 1.055 * LAYERS ** (1 / 2.4) - 0.055) * 255
+    encoded = linear_to_srgb(LAYERS) * 255
     for k in range(4):
         left = 2 + 24 * k
         np.testing.assert_allclose(

@@ -11,6 +11,7 @@ import pytest
 from playground.sketch.model import Camera
 
 from ..sketch_texts import passes
+from ..truth.eyes import on_level
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 PLAIN = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ return vec4({}, 1.0); }}\n'
@@ -47,18 +48,9 @@ def linear_frame(engine, sketch, name="view.land"):
 
 def on_the_ground(engine, shape):
     """Where each pixel's ray meets height 0, and how far from the eye, in float64."""
-    eye = engine.record.plan.eye
-    rows, columns = shape
-    x = (np.arange(columns) + 0.5) / columns * 2 - 1
-    y = (np.arange(rows) + 0.5) / rows * 2 - 1
-    grid = np.stack([*np.meshgrid(x, y), np.full(shape, 0.5), np.ones(shape)], axis=-1)
-    far = grid @ np.linalg.inv(eye.clip_from_world.astype(float)).T
-    way = far[..., :3] / far[..., 3:] - np.asarray(eye.position)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        length = -eye.position[2] / way[..., 2]
-        position = np.asarray(eye.position) + way * length[..., None]
+    position, length = on_level(engine.record.plan.eye, shape[::-1])
     inside = (length > 0) & (position[..., :2] > 20).all(axis=-1) & (position[..., :2] < 980).all(axis=-1)
-    return position, np.linalg.norm(way * length[..., None], axis=-1), inside
+    return position, length, inside
 
 
 def nearness(distance, reach):

@@ -7,15 +7,10 @@ import pytest
 from PIL import Image
 
 from playground.errors import DataError
+from playground.shader.colours import srgb_to_linear
 
 PLAIN = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ return vec4({}, 1.0); }}\n'
 EASTWARD = PLAIN.format("vec3(float(texel.x) / float(size.x - 1))")
-
-
-def linear(encoded: np.ndarray) -> np.ndarray:
-    """The sRGB curve, IEC 61966-2-1, in float64."""
-    share = np.asarray(encoded, float) / 255
-    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
 
 
 @pytest.fixture
@@ -41,7 +36,7 @@ def test_native_size_tile_returns_decoded_image_texels(engine, make_sketch, pict
     pixels = np.random.default_rng(4).integers(0, 256, (6, 10, 3))
     sketch = make_sketch(use("image", f'image = "{picture(pixels)}"'), size=[10, 6])
     # The software renderer decodes by a polynomial, off by up to 0.0015: less than half a level of the file.
-    np.testing.assert_allclose(rgb(engine, sketch), linear(pixels)[::-1], rtol=0, atol=2e-3)
+    np.testing.assert_allclose(rgb(engine, sketch), srgb_to_linear(pixels / 255)[::-1], rtol=0, atol=2e-3)
 
 
 @pytest.mark.parametrize("name", ["a.jpg", "a.webp", "a.png"])
@@ -51,8 +46,11 @@ def test_every_kind_of_file_gives_its_colours(any_engine, make_sketch, picture, 
     sketch = make_sketch(use("image", f'image = "{picture(pixels, name)}"'), size=16)
     colour = rgb(any_engine, sketch)
     with Image.open(tmp_path / name) as kept:
-        np.testing.assert_allclose(colour, linear(np.asarray(kept.convert("RGB")))[::-1], atol=2e-3)
-    np.testing.assert_allclose(colour.mean(axis=(0, 1)), linear(pixels).mean(axis=(0, 1)), atol=0.01)
+        expected = srgb_to_linear(np.asarray(kept.convert("RGB")) / 255)[::-1]
+    np.testing.assert_allclose(colour, expected, atol=2e-3)
+    np.testing.assert_allclose(
+        colour.mean(axis=(0, 1)), srgb_to_linear(pixels / 255).mean(axis=(0, 1)), atol=0.01
+    )
 
 
 @pytest.mark.parametrize("fit", ["tile", "land"])
@@ -82,7 +80,7 @@ def test_a_tile_meets_its_own_copy(any_engine, make_sketch, picture):
     pixels = np.random.default_rng(7).integers(0, 256, (4, 4, 3))
     sketch = make_sketch(use("image", f'image = "{picture(pixels)}"'), size=16)
     colour = rgb(any_engine, sketch)
-    source = linear(pixels)[::-1]
+    source = srgb_to_linear(pixels / 255)[::-1]
     between = (np.arange(16) + 0.5) / 4 - 0.5
     low, part = np.floor(between).astype(int), between - np.floor(between)
 

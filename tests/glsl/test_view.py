@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.shader.colours import linear_to_srgb
 from playground.sketch.model import Camera
+
+from ..truth import eyes
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 COLOUR = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ return {}; }}\n'
@@ -32,10 +35,8 @@ def above(sketch, azimuth=180.0, elevation=60.0, **more):
 def pixels_of(engine, points):
     """Where points of the terrain are in the last picture: column and row from the top left."""
     plan = engine.record.plan
-    clip = np.c_[points, np.ones(len(points))] @ plan.eye.clip_from_world.astype(float).T
-    position = clip[:, :2] / clip[:, 3:]
-    width, height = plan.frame_size
-    return np.stack([(position[:, 0] + 1) / 2 * width, (1 - position[:, 1]) / 2 * height], axis=1)
+    places = eyes.pixels_of(plan.eye, points, plan.frame_size)
+    return places * [1, -1] + [0, plan.frame_size[1]]
 
 
 # ── the terrain ─────────────────────────────────────────────────────────────────
@@ -224,12 +225,6 @@ def test_no_sea_costs_nothing(any_engine, terrain):
 # ── the last pass ────────────────────────────────────────────────────────────
 
 
-def encoded(linear):
-    """IEC 61966-2-1, piece by piece."""
-    kept = np.clip(linear, 0, 1)
-    return np.where(kept <= 0.0031308, 12.92 * kept, 1.055 * kept ** (1 / 2.4) - 0.055)
-
-
 @pytest.fixture
 def presented(make_sketch):
     ramp = COLOUR.replace("16f", "32f").format("vec4(float(texel.x) / 63.0 * vec3(1.0, 0.1, 2.0), 0.25)")
@@ -245,7 +240,7 @@ def presented(make_sketch):
 def test_the_picture_is_encoded_by_the_srgb_curve(engine, presented, stops):
     picture = engine.render(presented(f"exposure = {stops}"), size=(64, 4)).array
     light = np.arange(64)[:, None] / 63 * np.array([1.0, 0.1, 2.0]) * 2.0**stops
-    assert np.abs(picture[2, :, :3] - encoded(light) * 255).max() <= 0.51
+    assert np.abs(picture[2, :, :3] - linear_to_srgb(np.clip(light, 0, 1)) * 255).max() <= 0.51
     assert (picture[..., 3] == 255).all()
 
 

@@ -16,6 +16,8 @@ from playground.engine.engine import Engine
 from playground.errors import PlaygroundError, SketchError
 from playground.sketch.model import Camera
 
+from ..truth.eyes import holes
+
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 ROUGH = (
     "0.5 + 0.3 * sin(float(texel.x) * 0.11) * cos(float(texel.y) * 0.09)"
@@ -176,12 +178,6 @@ def flight(count: int):
             target=(200.0 + 600.0 * t, 700.0 - 500.0 * t, 60.0),
             field_of_view=35.0 + 40.0 * t,
         )
-
-
-def holes(picture: np.ndarray) -> int:
-    """Count the pixels of background that terrain closes in on every side."""
-    sky = (picture[..., 0] > 128) & (picture[..., 2] > 128)
-    return int((ndimage.binary_fill_holes(~sky, np.ones((3, 3))) & sky).sum())
 
 
 @pytest.mark.parametrize(("tolerance", "size"), [(1.0, 129), (6.0, 129), (2.0, [124, 105])])

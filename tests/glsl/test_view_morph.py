@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy import ndimage
 
 from playground.engine import lod
 from playground.engine import lod as sight
@@ -17,6 +16,7 @@ from playground.sketch.model import Camera
 
 from ..elevations import spans_of_tiles
 from ..sketch_texts import passes
+from ..truth.eyes import holes
 
 TERRAIN = """#include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")
@@ -193,12 +193,6 @@ def test_box_distances_are_to_nearest_and_furthest_point():
 
 
 # ── no crack ─────────────────────────────────────────────────────────────────
-
-
-def holes(picture: np.ndarray) -> int:
-    """Count the pixels of background that terrain closes in on every side."""
-    sky = (picture[..., 0] > 128) & (picture[..., 2] > 128)
-    return int((ndimage.binary_fill_holes(~sky, np.ones((3, 3))) & sky).sum())
 
 
 @pytest.mark.slow

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.shader.colours import srgb_to_linear
+
 MAP = '#pragma kernel(output = "weights:rgba32f")\n'
 MAP += "vec4 kernel(ivec2 texel) {{ vec2 s = vec2(texel) / vec2(size - 1); return {}; }}\n"
 BILINEAR = MAP.format("vec4(s.x * s.y, (1.0 - s.x) * s.y, s.x * (1.0 - s.y), (1.0 - s.x) * (1.0 - s.y))")
 PASSES = '[[pass]]\nname = "weights"\nuse = "./weights"\n[[pass]]\nname = "colour"\nuse = "view/weights"\n{}'
 # Okabe and Ito's green, orange, sky blue and purple, as bytes.
 BYTES = np.array([[0, 158, 115], [230, 159, 0], [86, 180, 233], [204, 121, 167]]) / 255
-COLOURS = np.where(BYTES <= 0.04045, BYTES / 12.92, ((BYTES + 0.055) / 1.055) ** 2.4)
+COLOURS = srgb_to_linear(BYTES)
 
 
 def shares(width, height):
