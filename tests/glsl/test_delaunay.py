@@ -165,13 +165,6 @@ def test_every_parameter_reaches_the_triangulation(any_engine, terrain):
     assert smooth.std() < 0.7 * rough.std()
 
 
-def test_samples_of_the_view_leave_heights_alone(any_engine, terrain):
-    sketch = terrain((33, 33), points=60)
-    first = any_engine.read(sketch.with_picture(samples=1), "terrain.tin")
-    np.testing.assert_array_equal(any_engine.read(sketch.with_picture(samples=8), "terrain.tin"), first)
-    assert any_engine.runs["terrain.tin"] == 1
-
-
 def test_more_triangles_than_there_are_add_nothing(any_engine, make_sketch):
     tin = use("generation/delaunay/tin", points=20)
     sketch = make_sketch(passes(made=use("generation/delaunay/triangulation", points=20), tin=tin))

@@ -153,26 +153,6 @@ def test_the_dimension_by_counting_boxes(any_engine, sketch_of, name):
     assert abs(slope - math.log(copies) / math.log(part)) < 0.05
 
 
-@pytest.mark.parametrize("name", NAMES[2:])
-def test_boxes_that_fit_the_copies_count_them_exactly(engine, sketch_of, name):
-    """A picture of 3^6 or 2^9 texels: boxes of 3^-k or 2^-k hold n^k copies."""
-    copies, part = COPIES[name]
-    side, depth = (729, 5) if part == 3 else (512, 7)
-    sketch = sketch_of((side, side), fractal=name, depth=depth, margin=0.0, label=False)
-    member = engine.read(sketch, "fractal:set_distance") == 0
-    if name == "Sierpinski triangle":
-        # Its boxes are squares, in which its rows of triangles do not stand upright: they are sheared first.
-        y, x = np.nonzero(member)
-        up = (y + 0.5) / side - 0.5 + ROOT_3 / 4
-        right = (x + 0.5) / side - up / ROOT_3
-        for k in range(1, 6):
-            cells = {(int(a), int(b)) for a, b in zip(right * 2**k, up / (ROOT_3 / 2) * 2**k, strict=True)}
-            assert len(cells) == copies**k
-        return
-    for k in range(1, 5):
-        assert boxes(member, side // part**k) == copies**k
-
-
 def read_label(picture):
     """Return the letters of a label's picture, 5 rows of 67, top row first."""
     shapes = {

@@ -165,18 +165,6 @@ def test_the_fade_and_its_slope(on_gpu):
         np.testing.assert_allclose(np.abs(np.diff(result, axis=0)) * 512, middle, atol=2e-4)
 
 
-def test_no_direction_is_drawn(any_engine, single):
-    """Slopes are as steep along the axes as along the diagonals, and so are the steepest."""
-    along = {0.0: [], 45.0: [], 90.0: [], 135.0: []}
-    for seed in range(12):
-        slopes = any_engine.read(single(DERIVATIVES, 129, seed=seed, octaves=3), "terrain").astype(float)
-        for degrees, result in along.items():
-            result.append(slopes @ [np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
-    for power, bound in ((2, 0.04), (4, 0.12)):
-        moments = np.array([(np.array(v) ** power).mean() for v in along.values()])
-        assert np.abs(moments / moments.mean() - 1).max() < bound
-
-
 # ── the terrain ──────────────────────────────────────────────────────────────
 
 
@@ -322,15 +310,6 @@ def test_curves_have_the_spectrum_and_deviation_of_the_motion(any_engine, single
     power = (np.abs(np.fft.rfft(windowed)) ** 2).mean(axis=0)
     assert abs(slope_of_bins(np.arange(power.size), power, 8, 512) + 2 * hurst + 1) < 0.1
     assert abs(rows.std() - 1) < 0.06
-
-
-def test_curves_know_nothing_of_each_other(any_engine, single):
-    values = {"hurst": (0.0,) * 4, "hurst_last": 0.0, "frequency": 64.0, "octaves": 5}
-    rows, other = (
-        any_engine.read(single(CURVES, (2049, 12), seed=s, **values), "terrain").astype(float) for s in (7, 8)
-    )
-    assert np.abs(np.corrcoef(rows)[np.triu_indices(12, 1)]).max() < 0.25
-    assert abs(np.corrcoef(rows[0], other[0])[0, 1]) < 0.25
 
 
 # ── ridges and warping, the lesson's kernels ─────────────────────────────────

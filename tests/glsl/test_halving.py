@@ -209,27 +209,6 @@ def test_each_row_is_the_line_after_so_many_steps(engine, single, length, rows, 
     np.testing.assert_allclose(lines, truth, atol=2e-6)
 
 
-def crease(terrain):
-    """How much the terrain bends across its main diagonal, over how much across those beside it."""
-    bend = np.abs(terrain[2:, :-2] - 2.0 * terrain[1:-1, 1:-1] + terrain[:-2, 2:])
-    near = [np.diagonal(bend, k).mean() for k in range(-40, 41) if k]
-    return np.diagonal(bend).mean() / np.mean(near)
-
-
-def test_the_main_diagonal_is_a_crease_as_the_thesis_says(any_engine, single):
-    """Its vertices know the diagonal's two ends only; diamond-square's know what is on both sides.
-
-    At r = 1.5 the crease grows with the root of the size, beside the bends of texels that are ever nearer.
-    """
-    for technique, values, low, high in (
-        (TRIANGLES, {"r": 1.5}, 3.0, np.inf),
-        (DIAMOND, {"smoothing": 0.5}, 0.0, 1.5),
-    ):
-        for seed in range(8):
-            terrain = any_engine.read(single(technique, 513, seed=seed, **values), "terrain")
-            assert low <= crease(terrain.astype(float)) <= high
-
-
 # ── diamond-square's compute variant: the bits of its passes ─────────────────
 
 

@@ -13,7 +13,6 @@ import pytest
 from playground.engine.engine import Engine
 
 from ..sketch_texts import passes, use
-from ..truth.horizon import horizon
 from ..truth.land import Land, cone, real, valley
 from ..truth.marches import Views
 from ..truth.methods import sketch_of
@@ -181,16 +180,6 @@ def test_the_march_is_brute_force(marcher, measured, terrain):
     np.testing.assert_allclose(seen.heights, terrain.heights - low, atol=1e-6 * relief)
     for channel, azimuth in enumerate(CHIEF):
         assert off(result[..., channel], brute(seen, azimuth)).max() < ROUNDING
-
-
-def test_the_march_is_never_over_the_exact_horizon(marcher, measured):
-    """It looks at whole rows: what stands higher between them, or within the first, it misses."""
-    terrain = cone(65)
-    result, _, _ = measured(marcher, terrain)
-    for channel, azimuth in enumerate(CHIEF):
-        exact = np.degrees(np.arctan(np.maximum(horizon(terrain, float(azimuth)), 0)))
-        over = (result[..., channel] - exact)[2:-2, 2:-2]
-        assert over.max() < ROUNDING and rms(over) < 0.8
 
 
 def test_first_turns_the_directions(engines, measured):

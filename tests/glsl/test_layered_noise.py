@@ -134,14 +134,6 @@ def test_every_frequency_even_above_the_size(engine, sketch_of, frequency, octav
     assert result.min() >= 0 and result.max() <= 1 and result.std() > 0.01
 
 
-@BOTH_TEXTS
-@pytest.mark.parametrize("size", [(9, 120), (120, 9), (3, 70), (40, 83)], ids=str)
-@pytest.mark.parametrize("frequency", [1, 4])
-def test_terrains_that_are_not_square(engine, sketch_of, size, frequency):
-    values = {"frequency": frequency, "octaves": 4, "persistence": 0.7}
-    np.testing.assert_allclose(raw(engine, sketch_of(size, **values)), twin(size, **values), atol=2e-6)
-
-
 def test_a_large_terrain_at_places_of_its_own(any_engine, sketch_of):
     """All layers at 1025², each place by itself: bands are worked out, and laid, for the whole."""
     values = {"frequency": 4, "octaves": 5, "persistence": 0.6}
@@ -282,20 +274,6 @@ def summits(terrain):
     return int((terrain > highest)[1:-1, 1:-1].sum())
 
 
-@pytest.mark.parametrize(("persistence", "low", "high"), [(0.04, 0.89, 0.98), (0.2, 0.33, 0.53)])
-@pytest.mark.parametrize("size", [257, 513])
-def test_details_take_small_summits_away(any_engine, mixed_of, size, persistence, low, high):
-    """On a shape that fills 0..1: about a tenth at the thesis's weight of 0.04, half and more at 0.2."""
-    kept = []
-    for seed in range(16):
-        sketch = mixed_of(size, persistence=persistence, seed=seed, shape_range="minmax")
-        shape, mix = (
-            summits(any_engine.read(sketch, f"terrain.{n}").astype(np.float64)) for n in ("shape", "mix")
-        )
-        kept.append(mix / shape)
-    assert low < np.mean(kept) < high, kept
-
-
 @pytest.mark.parametrize("technique", ["mixed", "mixed_tiled"])
 def test_the_smoothing_counts(any_engine, mixed_of, technique):
     """A smoother shape is a flatter one, of which the same details take more summits away."""
@@ -304,23 +282,6 @@ def test_the_smoothing_counts(any_engine, mixed_of, technique):
     ]
     assert np.abs(terrains[0] - terrains[1]).max() > 0.05
     assert summits(terrains[0]) < 0.9 * summits(terrains[1])
-
-
-@pytest.mark.parametrize("frequency", [4, 32])
-def test_details_know_nothing_of_the_shape(any_engine, mixed_of, frequency):
-    """The numbers that displace the shape's points are not those of the details' nodes at the same places."""
-    correlations = []
-    for seed in range(8):
-        sketch = mixed_of(257, seed=seed, frequency=frequency)
-        node = 256 // frequency
-        detail = any_engine.read(sketch, "terrain.detail").astype(float)[::node, ::node][1:-1, 1:-1]
-        raw = any_engine.read(sketch, "terrain.shape.raw").astype(float)[:: node // 2, :: node // 2]
-        # How far a point stands above the mean of the points around it, where it is an edge's middle.
-        here = raw[2:-2:2, 2:-2:2]
-        around = (raw[2:-2:2, :-4:2] + raw[2:-2:2, 4::2] + raw[:-4:2, 2:-2:2] + raw[4::2, 2:-2:2]) / 4
-        edges = np.add.outer(*[np.arange(1, len(detail) + 1)] * 2) % 2 == 1
-        correlations.append(np.corrcoef((here - around)[edges], detail[edges])[0, 1] * edges.sum() ** 0.5)
-    assert np.abs(np.mean(correlations)) < 4 / np.sqrt(8)
 
 
 # ── tiled: a tile that knows nothing of its neighbours, its seams repaired layer by layer ──

@@ -130,21 +130,6 @@ def test_the_table_is_the_sectors_integrals(ctx, kept, tmp_path, first):
 # Closed forms
 
 
-@pytest.mark.parametrize("summed", ["by the table", "by the formula", "over all directions"])
-def test_flat_terrain_sees_the_whole_sky(read, summed):
-    k, factor = read(Land(np.zeros((17, 23)), (5.0, 8.0)), "horizon_sky", "k", "factor", summed=summed)
-    np.testing.assert_array_equal(k, 1)
-    np.testing.assert_array_equal(factor[..., :3], 1)
-
-
-@pytest.mark.parametrize("summed", ["by the table", "by the formula", "over all directions"])
-@pytest.mark.parametrize("angle", [10.0, 30.0, 45.0])
-@pytest.mark.parametrize("towards", [0.0, 90.0, 22.5, 70.0])
-def test_a_plane_sees_the_sky_above_it(read, summed, angle, towards):
-    k = read(plane(angle, towards), "horizon_sky", "k", summed=summed)
-    np.testing.assert_allclose(k, (1 + np.cos(np.radians(angle))) / 2, atol=0.007)
-
-
 @pytest.mark.parametrize("angle", [20.0, 45.0])
 def test_a_plane_with_many_sectors(read, angle):
     k = read(plane(angle, 33.0), "horizon_sky", "k", summed="over all directions", directions=64)
@@ -168,16 +153,6 @@ def test_a_valley_without_end(read, angle, bound, spacing):
     elevation = np.arctan2((rim - here) * np.tan(np.radians(angle)), here + rim)
     truth = (1 + np.cos(np.radians(angle) + elevation)) / 2
     np.testing.assert_allclose(k[3:17], truth, atol=bound)
-
-
-@pytest.mark.parametrize("angle", [20.0, 35.0, 50.0])
-def test_between_walls_without_end(read, angle):
-    """On the foot of a wall, of slope a, the other rises at a: cos² a."""
-    ny, nx = 401, 161
-    x = np.abs(np.arange(nx) - 80.0)
-    terrain = Land(np.tile(x * np.tan(np.radians(angle)), (ny, 1)), (1.0, 1.0))
-    k = read(terrain, "horizon_sky", "k", summed="over all directions", directions=64)
-    assert k[ny // 2, 79] == pytest.approx(np.cos(np.radians(angle)) ** 2, abs=0.01)
 
 
 # The exact K

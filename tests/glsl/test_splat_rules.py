@@ -96,18 +96,6 @@ def test_a_saddle_and_a_plane_bend_neither_up_nor_down(cover):
     assert cover(value, "float(texel.x) * 0.03 + float(texel.y) * 0.02", size=81, extent=400.0).min() > 0.99
 
 
-def test_hollows_and_crests_part_a_wavy_terrain(cover):
-    waves = "0.5 + 0.5 * sin(6.2831853 * float(texel.x) / 32.0)"
-    value = "by_curvature = true, curvature_fade = 0.5, curvature_distance = 20"
-    more = {"size": [129, 9], "extent": [1280.0, 80.0], "relief": 50.0}
-    hollows = cover(f"{value}, curvature_from = 1", waves, **more)[4]
-    crests = cover(f"{value}, curvature_from = -20, curvature_to = -1", waves, **more)[4]
-    at = np.arange(129)
-    assert hollows[(at % 32 == 24) & (at > 4) & (at < 124)].min() == 1
-    assert crests[(at % 32 == 8) & (at > 4) & (at < 124)].min() == 1
-    assert (hollows * crests).max() == 0
-
-
 # ── chance ───────────────────────────────────────────────────────────────────
 
 
