@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ..sketch_texts import passes
-from .water_truth import counted, edge_of
+from ..truth.drainage import counted, edge_of
 
 # Spacings of 1 m: a cell is 1 m2, so that areas are whole numbers and equality is exact.
 PASSES = passes(ways="./ways", drained=("water/accumulation", 'inputs = {{ receiver = "ways"{rain} }}'))

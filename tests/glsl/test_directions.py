@@ -6,7 +6,7 @@ import pytest
 from playground.errors import SketchError
 
 from ..sketch_texts import passes
-from .water_truth import edge_of, steepest_slopes
+from ..truth.drainage import edge_of, steepest_slopes
 
 ROUGH = """
 #include "noise/hash.glsl"

@@ -6,7 +6,7 @@ import pytest
 from playground.engine.engine import Engine
 
 from ..sketch_texts import passes
-from .water_truth import edge_of, ends_of, flooded
+from ..truth.drainage import edge_of, ends_of, flooded
 
 PASSES = passes(
     height="./rough", fill="water/fill", down=("water/directions", 'inputs = { height = "fill" }')

@@ -8,7 +8,7 @@ import pytest
 from playground.paths import SKETCHES
 
 from ..sketch_texts import passes
-from .water_truth import counted, edge_of, ends_of, exceedance_power, flooded
+from ..truth.drainage import counted, edge_of, ends_of, exponent_of, flooded
 
 EXTENT, RELIEF = 20480.0, 1200.0
 PASSES = passes(
@@ -296,10 +296,10 @@ def test_it_drains_as_a_real_terrain(worn, kept, make_sketch, tmp_path):
     """The fraction of texels that drain more than a falls as a^-tau: 0.46 in the Cumberland Mountains."""
     shutil.copy(SKETCHES / "data" / "jacksboro_fault_dem.npz", tmp_path / "real.npz")
     real = make_sketch(REAL, size=[403, 344], extent=[402.0, 343.0])
-    result = exceedance_power(kept.read(real, "area"), 1.0)
+    result = exponent_of(kept.read(real, "area"), 30, 30)
     assert result == pytest.approx(0.46, abs=0.02)
     *_, area, _ = worn(513)
-    assert exceedance_power(area, (EXTENT / 512) ** 2) == pytest.approx(result, abs=0.1)
+    assert exponent_of(area / (EXTENT / 512) ** 2, 30, 30) == pytest.approx(result, abs=0.1)
 
 
 def efficiency(result, expected):
