@@ -27,7 +27,6 @@ from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Kernel
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.save import save, saved_text
-from playground.verify.reduce.case import inline_sketch
 
 from ..cases import each
 from ..loading import load

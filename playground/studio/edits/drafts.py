@@ -33,8 +33,7 @@ from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.replace_technique import with_texts
 from playground.studio.edits.edits import Draft, Edits, StoredEdits, first_draft, reload_draft, stored, taken
-from playground.studio.edits.history import CHECKED, Key, applied, changes_between, edits_of, state_of
-from playground.studio.edits.history import State, applied, changes_between, edits_of, state_of
+from playground.studio.edits.history import CHECKED, Key, State, applied, changes_between, edits_of, state_of
 from playground.studio.edits.technique_cache import TechniqueCache
 from playground.studio.picture.gestures import suns_of, turned_sun
 from playground.studio.reload.dependencies import watched
