@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from playground.studio.input.keymap import GESTURES
-from playground.studio.input.keys import KEYS
+from playground.studio.keys import GESTURES, all_keys
 
 from .markdown import code, escaped, table
 
@@ -18,7 +17,7 @@ The keys of `playground fly` are [on its page](../how-to/fly.md#controls).
 def page() -> str:
     """Return the page of keys and gestures."""
     keys: dict[str, list[str]] = {}
-    for key in KEYS:
+    for key in all_keys():
         keys.setdefault(key.meaning, []).append(key.name)
     rows = [(", ".join(code(name) for name in names), escaped(meaning)) for meaning, names in keys.items()]
     gestures = [(escaped(gesture), escaped(meaning)) for gesture, meaning in GESTURES]

@@ -25,8 +25,8 @@ from playground.studio.edits.edits import Draft
 from playground.studio.theme import Theme
 
 from ..loading import load
-from ..studio.live.test_fonts import constants, missing
-from ..studio.live.test_fonts import theme as theme
+from ..studio.test_fonts import constants, missing
+from ..studio.test_fonts import theme as theme
 from .conftest import SKETCHES
 
 NAMES = [summary.name for summary in summaries()]

@@ -13,13 +13,13 @@ import re
 
 import numpy as np
 import pytest
-from playground.verify.reduce.inline import inline_sketch
 
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError, ShaderError
 from playground.publish.large import strips
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import ForeignShader, kernels_of
+from playground.verify.reduce.case import inline_sketch
 
 from ..cases import each
 from ..foreign_cases import CASES, EVERY, REFUSALS, RESULTS

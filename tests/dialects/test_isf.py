@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from playground.verify.reduce.inline import inline_sketch
 
 from playground.data.image_files import write_png
 from playground.errors import ShaderError
-from playground.verify.reduce.case import copied
+from playground.verify.reduce.case import copied, inline_sketch
 
 from ..foreign_cases import CASES, photo
 from ..loading import load

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playground.studio.input.drops import _is_sketch
 
 from playground.engine.engine import Engine
+from playground.studio.drops import _is_sketch
 from playground.studio.problems.problems import Problems
 from playground.studio.session import Session
 
 from ..foreign_cases import CASES, HERE, MISTAKE, TEXTS, Case, export, one
-from ..studio.live.desk import Bare
+from ..studio.panel_desk import Bare
 from .drawing import colours
 
 SIZE = (16, 9)

@@ -7,11 +7,11 @@ import wave
 import numpy as np
 import pytest
 import tifffile
-from playground.verify.reduce.inline import inline_sketch
 
 from playground.data.image_files import write_png
 from playground.errors import PlaygroundError, ShaderError
 from playground.studio.channels.channels import with_source
+from playground.verify.reduce.case import inline_sketch
 
 from ..foreign_cases import CASES, TEXTS, cube, export, one, read
 from ..loading import load

@@ -523,7 +523,7 @@ def test_it_is_saved_by_its_label(widgets):
 
 
 def test_it_is_reduced_to_the_same_values(widgets):
-    from playground.verify.reduce.inline import inline_sketch
+    from playground.verify.reduce.case import inline_sketch
 
     case = inline_sketch(widgets('set = { mode = "none" }'), frame=(8, 8))
     assert dict(case.passes[0].values)["mode"] == 2

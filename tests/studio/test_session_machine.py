@@ -24,13 +24,13 @@ from hypothesis.stateful import (
     rule,
     run_state_machine_as_test,
 )
-from playground.studio.reload.reload_stages import ReloadStage
 
 from playground.engine.engine import Engine
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera, Sketch
 from playground.sketch.replace_technique import with_technique
 from playground.studio.edits.history import state_of
+from playground.studio.reload.stages import ReloadStage
 
 from ..loading import load
 from ..spread import git

@@ -19,13 +19,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from playground.studio.window_place import WindowPlacement, on_screen
 
 from playground.data.image_files import write_png
 from playground.errors import ContextError
 from playground.sketch.load import load
 from playground.studio.app import run, title_of
 from playground.studio.channels.channels import channels
+from playground.studio.window import WindowPlacement, on_screen
 
 from ..data.test_bounds import npz
 from ..sketch_texts import map_of, passes
@@ -46,7 +46,7 @@ from pathlib import Path
 from imgui_bundle import imgui
 import playground.studio.window as window
 from playground.studio.app import run
-from playground.studio.input.drops import Drops
+from playground.studio.drops import Drops
 from playground.studio.problems.panel import ErrorsList
 from playground.studio.session import Session
 slide, frame, take, draw = imgui.slider_float, Session.frame, Drops.take, ErrorsList.draw
