@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from playground.studio.keys import GESTURES, all_keys
+from playground.studio.keys import GESTURES, keys_by_meaning
 
 from .markdown import code, escaped, table
 
@@ -16,10 +16,10 @@ The keys of `playground fly` are [on its page](../how-to/fly.md#controls).
 
 def page() -> str:
     """Return the page of keys and gestures."""
-    keys: dict[str, list[str]] = {}
-    for key in all_keys():
-        keys.setdefault(key.meaning, []).append(key.name)
-    rows = [(", ".join(code(name) for name in names), escaped(meaning)) for meaning, names in keys.items()]
+    rows = [
+        (", ".join(code(name) for name in names), escaped(meaning))
+        for meaning, names in keys_by_meaning().items()
+    ]
     gestures = [(escaped(gesture), escaped(meaning)) for gesture, meaning in GESTURES]
     return (
         _HEAD

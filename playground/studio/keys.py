@@ -278,7 +278,8 @@ def draw_keymap(interface: Interface, look: Theme) -> None:
     with window("keys", flags, ground=POPUP_COLOUR, rounding=8 * look.scale, sizes=cell):
         with look.font(look.bold, theme.TEXT_SIZE + 2):
             imgui.text_unformatted("Keys")
-        rows = *_joined(), *GESTURES
+        names = [(", ".join(names), meaning) for meaning, names in keys_by_meaning().items()]
+        rows = *names, *GESTURES
         fits = (len(rows) + _AROUND) * imgui.get_text_line_height() <= room.y
         with look.font(look.text, theme.TEXT_SIZE if fits else theme.SMALL):
             warm = theme.colour(theme.WARM)
@@ -292,12 +293,12 @@ def draw_keymap(interface: Interface, look: Theme) -> None:
             interface.keymap_shown = False
 
 
-def _joined() -> list[tuple[str, str]]:
-    """Return the keys and their meanings, keys that mean the same on one line."""
-    keys_by_action: dict[str, list[str]] = {}
+def keys_by_meaning() -> dict[str, list[str]]:
+    """Return the names of the keys by what they do, in the order of the key map."""
+    names: dict[str, list[str]] = {}
     for key in all_keys():
-        keys_by_action.setdefault(key.meaning, []).append(key.name)
-    return [(", ".join(names), meaning) for meaning, names in keys_by_action.items()]
+        names.setdefault(key.meaning, []).append(key.name)
+    return names
 
 
 # ── keys of a picture ─────────────────────────────────────────────────────────
