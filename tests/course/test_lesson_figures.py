@@ -262,9 +262,8 @@ def test_nothing_of_a_lesson_is_remembered_of_its_sketches(harness, tmp_path):
     harness.run_frames(60)
     harness.autosave.close()
     memories = [json.loads(file.read_text()) for file in (tmp_path / "state").rglob("sessions/*.json")]
-    assert [
-        (Path(memory["sketch"]).parent.name, memory["values"]["height.seed"]["value"]) for memory in memories
-    ] == [("own", 5)]
+    seeds = [(Path(m["sketch"]).parent.name, dict(m["edits"]["values"])["height.seed"]) for m in memories]
+    assert seeds == [("own", 5)]
 
 
 def test_play_on_opens_figure_as_own_sketch_with_its_edits(harness):
