@@ -13,7 +13,6 @@ import numpy as np
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import DataError
-from playground.publish.web.addons import page_script
 from playground.publish.web.blobs import bytes_in_page
 from playground.publish.web.bundle import read_bundle
 from playground.publish.web.page import Poster, page_html
@@ -68,7 +67,7 @@ def prepare_page(
     if bytes_of_data > MAX_PAGE_BYTES:
         largest = f"at most {MAX_PAGE_BYTES // 2**20} MiB; a smaller terrain, image or film would do"
         raise DataError(f"its data would be {bytes_of_data / 2**20:.0f} MiB of a page, {largest}", file=path)
-    return WebPage(data, page_script(data), style, stops, time, size)
+    return WebPage(data, read_bundle("page.js"), style, stops, time, size)
 
 
 def page_bytes(engine: Engine, sketch: Sketch, page: WebPage, language: str = "en") -> tuple[bytes, str]:

@@ -19,7 +19,6 @@ const HERE = dirname(fileURLToPath(import.meta.url));
  *  @type {Object<string, "iife" | "esm" | "css">} */
 const ENTRIES = {
   "loader.js": "iife", "page.js": "iife", "page.css": "css",
-  "with_keyframes.js": "iife", "with_plain.js": "iife",
   "book.js": "iife", "book.css": "css",
   "notebook.js": "esm", "notebook.css": "css",
   "remote.js": "iife", "remote.css": "css",

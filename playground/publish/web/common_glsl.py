@@ -303,12 +303,13 @@ _ROWS = (
     "vec4 k_lineFetch(sampler2D k_s, int k_p, int k_l) { return texelFetch(k_s, ivec2(k_p, 0), k_l); } "
     "int k_lineSize(sampler2D k_s, int k_l) { return textureSize(k_s, k_l).x; } "
 )
-_ROW_FUNCTIONS = {
-    "texture": "k_line",
-    "textureLod": "k_lineLod",
-    "texelFetch": "k_lineFetch",
-    "textureSize": "k_lineSize",
-}
+_ROW_FUNCTIONS = dict(
+    zip(
+        ("texture", "textureLod", "texelFetch", "textureSize"),
+        ("k_line", "k_lineLod", "k_lineFetch", "k_lineSize"),
+        strict=True,
+    )
+)
 
 
 def _sampler_rows(text: str) -> str:
@@ -418,20 +419,8 @@ _QUALIFIERS = frozenset(
     lowp precise patch sample
     """.split()
 )
-_LEVELS = (
-    ("||",),
-    ("^^",),
-    ("&&",),
-    ("|",),
-    ("^",),
-    ("&",),
-    ("==", "!="),
-    ("<", ">", "<=", ">="),
-    ("<<", ">>"),
-    ("+", "-"),
-    ("*", "/", "%"),
-)
-_BINDING = {sign: level for level, signs in enumerate(_LEVELS, 1) for sign in signs}
+_LEVELS = "|| ^^ && | ^ & ==,!= <,>,<=,>= <<,>> +,- *,/,%".split()
+_BINDING = {sign: level for level, signs in enumerate(_LEVELS, 1) for sign in signs.split(",")}
 _ASSIGNING = re.compile(r"(?:[-+*/%&|^]|<<|>>)?=")
 _INT = re.compile(r"[-+]?\d+")
 _FLOAT = re.compile(r"[-+]?(?:\d+\.\d*|\.\d+|\d+(?=[eE]))(?:[eE][-+]?\d+)?f?")

@@ -11,7 +11,6 @@ from playground.engine.textures import split_format
 from playground.paths import GLSL
 from playground.publish.web.common_glsl import in_common_glsl, lacking
 from playground.publish.web.formulas import accepted_runs, formula
-from playground.publish.web.stages import stage_data
 from playground.publish.web.texts import Texts
 from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.kernel import options_of
@@ -139,6 +138,25 @@ def _check_common_glsl(recipe: Recipe) -> None:
             if not Path(line.file).is_relative_to(GLSL):
                 message = f"web pages compile GLSL ES 3.00, which wants this written as `{now.strip()}`"
                 raise line.error(message)
+
+
+def stage_data(recipe: Recipe, file: str = "") -> dict[str, Any]:
+    """Return a recipe as data; ``file``: the name of its lines' file where it is not the kernel's own."""
+    if recipe.text:
+        return {"text": recipe.text}
+    before = [
+        {"text": part.text, **({"names": list(part.names)} if part.names else {})} for part in recipe.before
+    ]
+    data: dict[str, Any] = {"before": before, "after": recipe.after.removesuffix("\n")}
+    if recipe.without:
+        data["without"] = recipe.without
+    if recipe.replaced:
+        data["replace"] = dict(recipe.replaced)
+    if recipe.keeps_version:
+        data["keepsVersion"] = True
+    if file:
+        data["file"] = file
+    return data
 
 
 def sampling_data(sampling: Sampling) -> dict[str, Any]:

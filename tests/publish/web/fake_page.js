@@ -1,6 +1,5 @@
 // fake_page.js -- a page over a player that draws without WebGL what its state says, for tests.
 
-import "../../../playground/publish/web/runtime/with_all.js";
 import { createPage } from "../../../playground/publish/web/runtime/sketch_page.js";
 import { PAGE_WORDS } from "../../../playground/publish/web/runtime/page_words.js";
 

@@ -39,7 +39,6 @@ function decoded(value) {
 /** Calls a module's function, or a script: the text of a function of the data and of what loads modules. */
 async function answerTo({ folder, module, name, values, script }) {
   const inFolder = (file) => load(`${folder}/${file}`);
-  await inFolder("with_all.js");
   if (script !== undefined) return await (0, eval)(`(${script})`)(...values, inFolder);
   return await (await inFolder(module))[name](...values);
 }

@@ -22,7 +22,7 @@ from .firefox import Firefox
 from .node import NODE
 
 HOME = Path(playground.publish.web.__file__).parent
-ENGINE = Path(__file__).with_name("whole_engine.js")
+ENGINE = HOME / "runtime" / "engine.js"
 ESBUILD = HOME / "node_modules" / "esbuild"
 if not MISSING and not (NODE and ESBUILD.exists()):
     MISSING = "needs Node, and npm ci in playground/publish/web"

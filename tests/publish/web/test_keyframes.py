@@ -16,7 +16,7 @@ from playground.sketch.keyframes import EASES, Track
 from .node import Node
 
 TRACKS = """async (tracks, times, load) => {
-    const { valueAt } = await load("with_keyframes.js");
+    const { valueAt } = await load("values.js");
     return tracks.map((track) => times.map((time) => valueAt(track, time)));
 }"""
 

@@ -86,7 +86,7 @@ def shared() -> Iterator[SharedData]:
         patch.setattr(texts, "_is_as_written", lambda *_: True)
         patch.setattr(Blobs, "add", lambda *_: "texels")
         patch.setattr(_Writing, "_drawn", lambda *_: defaultdict(lambda: np.zeros((1, 1), np.float32)))
-        patch.setattr("playground.publish.web.images._lossless", lambda _: b"")
+        patch.setattr("playground.publish.web.shared._lossless", lambda _: b"")
         yield SharedData()
 
 

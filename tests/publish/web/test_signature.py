@@ -47,7 +47,7 @@ TEXTS = [
     DRAW + "vec4 vertex(vec3 c, out vec3 p) { return vec4(0); }\nvec3 fragment(vec3 p) { return vec3(0); }",
 ]
 SCRIPT = """async (kernel, text, load) => {
-  const { flatten } = await load("source.js"), { checkSignature } = await load("with_editing.js");
+  const { flatten } = await load("source.js"), { checkSignature } = await load("edits.js");
   checkSignature(kernel, flatten({ files: { "./a.glsl": text }, includes: {} }, "./a.glsl"));
 }"""
 
@@ -88,4 +88,4 @@ def test_texts_are_refused_where_python_refuses_them(node: Node, tmp_path: Path)
 def test_no_program_of_the_library_is_refused(node: Node):
     for kernel in kernels().values():
         lines = [{"code": line.code, "raw": line.text, "file": "", "line": 1} for line in kernel.source.lines]
-        node.call("with_editing.js", "checkSignature", given(kernel), {"lines": lines})
+        node.call("edits.js", "checkSignature", given(kernel), {"lines": lines})

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from playground.paths import GLSL
-from playground.publish.web.stages import stage_data
+from playground.publish.web.kernels import stage_data
 from playground.shader.source import read_source
 from playground.shader.stage_recipe import Recipe, StagePart
 from playground.shader.wrap import FRAGMENT, recipes_of

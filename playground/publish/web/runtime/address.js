@@ -3,11 +3,8 @@
 import { quoted, read, shellWord, toml, write } from "./numbers.js";
 import { terrainRows } from "./session.js";
 
-/** @typedef {import("./schema.js").Value} Value */
-/** @typedef {import("./schema.js").Camera} Camera */
-/** @typedef {import("./schema.js").Shown} Shown */
-/** @typedef {import("./schema.js").Sketch} Sketch */
-/** @typedef {import("./session.js").Session} Session */
+/** @import { Camera, Shown, Sketch, Value } from "./schema.js"
+ *  @import { Session } from "./session.js" */
 
 /** @typedef {{index: number, values: [string, Value][], camera: Camera | null, time: number | null,
  *             refused: string[]}} Link */

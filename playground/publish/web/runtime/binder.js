@@ -3,12 +3,13 @@
 import { unitVector } from "./camera.js";
 import { setUniform } from "./programs.js";
 
+/** @import { Program } from "./programs.js"
+ *  @import { Sampling } from "./schema.js"
+ *  @import { Texture } from "./textures.js" */
+
 /** What an input reads: a texture, and the result that it is part of.
  *  @typedef {{result: import("./textures.js").Result, texture: import("./textures.js").Texture,
  *             output: string}} Wired */
-/** @typedef {import("./textures.js").Texture} Texture */
-/** @typedef {import("./programs.js").Program} Program */
-/** @typedef {import("./schema.js").Sampling} Sampling */
 /** @typedef {ReturnType<typeof createBinder>} Binder */
 
 /** @type {Object<string, number[]>} */

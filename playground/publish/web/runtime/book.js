@@ -1,6 +1,5 @@
 // book.js -- the entry of a book's pages: starts a figure where a reader asks for it.
 
-import "./with_all.js";
 import { openBook, settled } from "./book_data.js";
 import { liveChallenge, liveExercise } from "./book_exercise.js";
 import { createBookRecovery, liveFigure } from "./book_figure.js";
@@ -11,7 +10,7 @@ import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
 import { lackOf } from "./recovery.js";
 
-/** @typedef {import("./book_figure.js").Room} Room */
+/** @import { Room } from "./book_figure.js" */
 
 /** @type {Object<string, (room: Room) => Promise<unknown>>} */
 const KINDS = {

@@ -5,11 +5,7 @@
 
 import { unpackedJson } from "./packed.js";
 
-/** @typedef {import("./schema.js").Sketch} Sketch */
-/** @typedef {import("./schema.js").Kernel} Kernel */
-/** @typedef {import("./schema.js").Shared} Shared */
-/** @typedef {import("./schema.js").Value} Value */
-/** @typedef {import("./schema.js").Leaf} Leaf */
+/** @import { Kernel, Leaf, Shared, Sketch, Value } from "./schema.js" */
 
 /** A scene: one of a lesson's sketches, and what it sets of that. See course/book/live.py.
  *  @typedef {object} Setting

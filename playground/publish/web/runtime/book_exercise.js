@@ -8,8 +8,8 @@ import { fill } from "./words.js";
 import { createCheck, createJudge, createScore, sentence } from "./work_check.js";
 import { followParameters } from "./written_parameters.js";
 
-/** @typedef {import("./book_figure.js").Room} Room */
-/** @typedef {import("./work_check.js").Outcome} Outcome */
+/** @import { Room } from "./book_figure.js"
+ *  @import { Outcome } from "./work_check.js" */
 
 const SETTLED = 350; // [ms] without a change, then what was set is compared
 const SIDE = 240; // pixels of the pictures that a verdict shows, side by side

@@ -9,10 +9,14 @@ import { createRecovery } from "./recovery.js";
 import { createSession } from "./session.js";
 import { createTimeline, hasTime } from "./timeline.js";
 
+/** @import { LiveBlock } from "./book_data.js"
+ *  @import { Figure } from "./figure.js"
+ *  @import { Guard } from "./recovery.js"
+ *  @import { Sketch } from "./schema.js"
+ *  @import { Session } from "./session.js" */
+
 // ── When the one context of many figures is lost: each stands still, says why, and goes on.
 
-/** @typedef {import("./figure.js").Figure} Figure */
-/** @typedef {import("./recovery.js").Guard} Guard */
 /** @typedef {ReturnType<typeof createBookRecovery>} BookRecovery */
 
 /** What keeps the texts of an editor, and what puts one back into it.
@@ -66,9 +70,6 @@ export function createBookRecovery(engine, language) {
 
 // ── A live picture in the text of a book, what can be dragged of it, its time
 
-/** @typedef {import("./schema.js").Sketch} Sketch */
-/** @typedef {import("./session.js").Session} Session */
-/** @typedef {import("./book_data.js").LiveBlock} LiveBlock */
 /** What a live block is made with.
  *  @typedef {object} Room
  *  @property {HTMLElement} host                 empty, in the place of the still pictures

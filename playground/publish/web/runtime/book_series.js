@@ -6,10 +6,11 @@ import { clamp, isWhole, toHex, unitOf, write, written } from "./numbers.js";
 import { createSession } from "./session.js";
 import { fill } from "./words.js";
 
-// ── A slider's listed values, and those between them.
+/** @import { Room } from "./book_figure.js"
+ *  @import { Shown, Sketch, Value } from "./schema.js"
+ *  @import { Session } from "./session.js" */
 
-/** @typedef {import("./schema.js").Shown} Shown */
-/** @typedef {import("./schema.js").Value} Value */
+// ── A slider's listed values, and those between them.
 
 /** The value at a place among listed ones, from 0 to their count less one; linear between neighbours.
  *  @param {Pick<Shown, "type">} row @param {Value[]} values @param {number} place @returns {Value} */
@@ -41,10 +42,6 @@ export function spelled(row, value, comma) {
 }
 
 // ── Live series of a book
-
-/** @typedef {import("./book_figure.js").Room} Room */
-/** @typedef {import("./schema.js").Sketch} Sketch */
-/** @typedef {import("./session.js").Session} Session */
 
 const STAYS = 700; // [ms] of an iteration that is played
 

@@ -9,7 +9,9 @@ import { createSession } from "./session.js";
 import { fill } from "./words.js";
 import { createCheck } from "./work_check.js";
 
-/** @typedef {import("./book_figure.js").Room} Room */
+/** @import { LiveBlock } from "./book_data.js"
+ *  @import { Room } from "./book_figure.js" */
+
 /** @typedef {{file: string, line: number, message: string}} Mistake */
 
 const PAUSE = 200; // [ms] without a key, then what was typed is compiled
@@ -147,8 +149,6 @@ export function createText({ host, sketches, engine, watched, words }, written) 
 }
 
 // ── A bug in a shader that a reader of a book finds and fixes: its lines, and what says it is.
-
-/** @typedef {import("./book_data.js").LiveBlock} LiveBlock */
 
 /** A file with other lines in place of those that are shown. @param {string} text of the file
  *  @param {Pick<LiveBlock, "first" | "rest" | "indent">} block @param {string} shown */

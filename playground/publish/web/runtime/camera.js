@@ -7,6 +7,8 @@
 
 import { clamp } from "./numbers.js";
 
+/** @import { Camera } from "./schema.js" */
+
 // ── Turns directions on the terrain into vectors: engine/camera.py.
 //
 // Sums and products alone, in the order of Python's: no two libraries of mathematics agree on the last bit
@@ -56,7 +58,6 @@ function series(factors, x) {
 
 // ── Turns a camera that orbits the terrain into matrices
 
-/** @typedef {import("./schema.js").Camera} Camera */
 /** @typedef {[number, number, number]} Vector */
 
 /** A camera over one terrain, seen in one picture. Positions in metres.

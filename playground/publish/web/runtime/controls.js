@@ -6,9 +6,9 @@ import {
   WIDGETS, written,
 } from "./numbers.js";
 
-// ── One number of a parameter: a field, and a slider where it has a range, else a drag.
+/** @import { Shown, Value } from "./schema.js" */
 
-/** @typedef {import("./schema.js").Shown} Shown */
+// ── One number of a parameter: a field, and a slider where it has a range, else a drag.
 
 /** @typedef {object} Line
  *  @property {number} part                    which number of the parameter
@@ -185,7 +185,6 @@ export function makePad(one, changed) {
 
 // ── A row of the panel for each parameter
 
-/** @typedef {import("./schema.js").Value} Value */
 /** @typedef {{element: Element, show: (value: any) => void}} Control */
 
 /** What a row does.

@@ -9,6 +9,10 @@ import { failure } from "./context.js";
 import { choose, CHOSEN_BY, pieces, ranges, vertices } from "./detail.js";
 import { headerNames, whole } from "./formulas.js";
 
+/** @import { Job, Work } from "./kernels.js"
+ *  @import { Program } from "./programs.js"
+ *  @import { Result } from "./textures.js" */
+
 // ── Builds the meshes that draws may ask for, by name: engine/meshes.py.
 
 /** Vertices, attribute by attribute with so many numbers each, and how to join them, three a triangle.
@@ -125,10 +129,6 @@ function tile() {
 
 // ── Draws meshes
 
-/** @typedef {import("./kernels.js").Job} Job */
-/** @typedef {import("./kernels.js").Work} Work */
-/** @typedef {import("./textures.js").Result} Result */
-/** @typedef {import("./programs.js").Program} Program */
 /** @typedef {{key: string, attributes: [string, number, WebGLBuffer][], indices: WebGLBuffer, length: number,
  *             tiles: WebGLBuffer | null}} Mesh */
 

@@ -5,8 +5,8 @@ import { button, copy, make, save } from "./dom.js";
 import { fileGroups, notices } from "./sketch_files.js";
 import { fill } from "./words.js";
 
-/** @typedef {import("./schema.js").Sketch} Sketch */
-/** @typedef {import("./schema.js").Shared} Shared */
+/** @import { Shared, Sketch } from "./schema.js" */
+
 /** @typedef {{file: string, line: number, message: string, kernel: string, column?: number}} Complaint */
 
 /** What the editor asks of a player.

@@ -1,19 +1,21 @@
 // engine.js -- one WebGL2 context for many figures: what they share, and what is left when it is lost.
 
-import { addOns } from "./addons.js";
 import { createBinder } from "./binder.js";
 import { createCache } from "./cache.js";
 import { failure, finished, openContext } from "./context.js";
 import { createDraws } from "./draws.js";
 import { createKernels } from "./kernels.js";
+import { createPlain } from "./plain.js";
 import { createPlayer } from "./player.js";
 import { createPrograms } from "./programs.js";
 import { createImages, createTextures } from "./textures.js";
 
+/** @import { KernelText } from "./kernel_texts.js"
+ *  @import { Player } from "./player.js" */
+
 // ── Long work in slices: between them the browser draws and listens; what each kernel takes is
 // measured.
 
-/** @typedef {import("./kernel_texts.js").KernelText} KernelText */
 /** @typedef {{text: KernelText, texels: number}} Piece */
 /** @typedef {ReturnType<typeof createClock>} Clock */
 
@@ -92,8 +94,6 @@ export const createClock = () => {
 
 // ── One WebGL2 context for many figures
 
-/** @typedef {import("./player.js").Player} Player */
-
 /** `bytes` bounds what is kept of textures, `without` lists extensions of WebGL to do without; after `often`
  *  draws with the same choices these are written into a program (kernels.js).
  *  @typedef {{bytes?: number, without?: string[], often?: number}} Options */
@@ -107,7 +107,7 @@ export const createClock = () => {
  *  @property {import("./binder.js").Binder} binder
  *  @property {import("./kernels.js").Kernels} kernels
  *  @property {ReturnType<typeof createDraws>} draws
- *  @property {ReturnType<typeof import("./with_plain.js").createPlain> | undefined} plain  an add-on
+ *  @property {ReturnType<typeof createPlain>} plain
  *  @property {import("./cache.js").Cache} cache */
 
 /** @typedef {object} Engine
@@ -141,7 +141,7 @@ export const createEngine = (canvas, shared, options = {}) => {
     const binder = createBinder(context, textures, images);
     const kernels = createKernels(context, textures, programs, binder, shared, options.often);
     const draws = createDraws(context, textures, programs, binder, kernels);
-    const plain = addOns.plain?.createPlain(context, textures, images, binder, kernels);
+    const plain = createPlain(context, textures, images, binder, kernels);
     const cache = createCache(bytes, textures);
     return { context, textures, programs, images, binder, kernels, draws, plain, cache };
   };
@@ -175,7 +175,7 @@ export const createEngine = (canvas, shared, options = {}) => {
     close: () => {
       for (const player of [...players]) player.close();
       const { cache, textures, images, binder, draws, plain, programs } = engine.parts;
-      for (const part of [cache, textures, images, binder, draws, plain, programs]) part?.clear();
+      for (const part of [cache, textures, images, binder, draws, plain, programs]) part.clear();
       canvas.removeEventListener("webglcontextlost", keep);
     },
   };

@@ -9,16 +9,15 @@ import { started } from "./draws.js";
 import { bodyOf, isLoop, readWithLevels, stepsOf } from "./plan_nodes.js";
 import { texelsOf } from "./textures.js";
 
-/** @typedef {import("./plan.js").Plan} Plan */
-/** @typedef {import("./plan_nodes.js").Step} Step */
-/** @typedef {import("./plan_nodes.js").LoopStep} LoopStep */
+/** @import { Wired } from "./binder.js"
+ *  @import { Cached } from "./cache.js"
+ *  @import { Job } from "./kernels.js"
+ *  @import { Plan } from "./plan.js"
+ *  @import { LoopStep, Ref, Step } from "./plan_nodes.js"
+ *  @import { Source } from "./schema.js"
+ *  @import { Result } from "./textures.js" */
+
 /** @typedef {Step | LoopStep} PlanNode */
-/** @typedef {import("./schema.js").Source} Source */
-/** @typedef {import("./textures.js").Result} Result */
-/** @typedef {import("./binder.js").Wired} Wired */
-/** @typedef {import("./cache.js").Cached} Cached */
-/** @typedef {import("./plan_nodes.js").Ref} Ref */
-/** @typedef {import("./kernels.js").Job} Job */
 /** @typedef {Map<string, Wired | null>} Fed  what loops feed back, by loop and name */
 
 /** What a run needs of its engine and its player.
@@ -28,7 +27,7 @@ import { texelsOf } from "./textures.js";
  *  @property {import("./textures.js").Textures} textures
  *  @property {import("./kernels.js").Kernels} kernels
  *  @property {ReturnType<typeof import("./draws.js").createDraws>} draws
- *  @property {ReturnType<typeof import("./with_plain.js").createPlain> | undefined} plain
+ *  @property {ReturnType<typeof import("./plain.js").createPlain>} plain
  *  @property {import("./textures.js").Images} images
  *  @property {WebGL2RenderingContext} gl
  *  @property {(step: Step, frame: number | null) => Object<string, any>} given
@@ -183,7 +182,7 @@ export const createExecution = (plan, nodes, around) => {
     if (kind === "source") return fromData(step, loops);
     if (kind === "draw") yield* withSamples(step, inputs);
     const runner = kind === "draw" ? draws : kind === "plain_fragment" ? plain : kernels;
-    return yield* /** @type {NonNullable<typeof runner>} */ (runner).run(job); // its text needs the add-on
+    return yield* runner.run(job);
   };
 
   /** Draw again what a draw goes on from, where its samples went on into an earlier run of this draw.

@@ -8,6 +8,9 @@ import { followPointer, readsPointer, steerWith } from "./steering.js";
 import { cameraAt } from "./values.js";
 import { fill } from "./words.js";
 
+/** @import { Sketch } from "./schema.js"
+ *  @import { Session } from "./session.js" */
+
 // ── The player of a figure: opened for its sketch, and made ready for what is asked next.
 
 /** Of the figure.
@@ -94,8 +97,6 @@ export function holdPlayer({ engine, session, words, tell, takeState, prepare, o
 
 // ── One live picture in a page
 
-/** @typedef {import("./schema.js").Sketch} Sketch */
-/** @typedef {import("./session.js").Session} Session */
 /** @typedef {ReturnType<typeof createFigure>} Figure */
 
 /** What figures need of a player: see engine.js.

@@ -5,9 +5,10 @@ import {
   fitted, isOfView, linesAt, movedView, paintMap, sheetOf, texelAt, WHOLE, zoomedView,
 } from "./map_view.js";
 
-/** @typedef {import("./figure.js").Player} Player */
-/** @typedef {import("./session.js").Session} Session */
-/** @typedef {import("./map_view.js").Texels} Texels */
+/** @import { Player } from "./figure.js"
+ *  @import { Texels } from "./map_view.js"
+ *  @import { Session } from "./session.js" */
+
 /** @typedef {ReturnType<typeof createFigureMap>} FigureMap */
 
 /** Of the figure.

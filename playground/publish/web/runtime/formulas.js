@@ -3,7 +3,8 @@
 import { failure } from "./context.js";
 import { general } from "./numbers.js";
 
-/** @typedef {import("./schema.js").Formula} Formula */
+/** @import { Step } from "./plan_nodes.js"
+ *  @import { Formula } from "./schema.js" */
 
 /** What names stand for, and operations on passes and loops: their formulas are not worked out before.
  *  @typedef {{name: (name: string) => number | undefined}
@@ -112,8 +113,6 @@ export const headerNames = ({ size, values }, time, more = {}) => ({
 });
 
 // ── The lattice that a kernel fills ever more closely: playground/engine/lattice.py.
-
-/** @typedef {import("./plan_nodes.js").Step} Step */
 
 /** The texels from one node of the lattice that an iteration fills to the next.
  *  @param {Omit<Step, "between">} step @param {number} iteration @param {number} time [s] */

@@ -3,6 +3,9 @@
 import { declaredUniforms, flatten } from "./source.js";
 import { hash, usedBy } from "./staleness.js";
 
+/** @import { Kernel, Shared, Stage } from "./schema.js"
+ *  @import { Flat } from "./source.js" */
+
 // ── Desktop GLSL 3.30 as GLSL ES 3.00, line for line: what is on a line stays on it.
 //
 // ES wants its version on the first line and precisions before anything that has one; it knows neither
@@ -83,9 +86,6 @@ function withoutInitialisers(text) {
 }
 
 // ── Makes the text of a shader stage from a kernel's flat text: shader/stage_recipe.py.
-
-/** @typedef {import("./schema.js").Stage} Stage */
-/** @typedef {import("./source.js").Flat} Flat */
 
 const VERSION_LINE = /^\s*#\s*version\b/;
 
@@ -207,9 +207,6 @@ const callsOf = (text, name) => [...text.matchAll(new RegExp(`\\b${name}\\s*\\(`
 });
 
 // ── What a kernel's text says
-
-/** @typedef {import("./schema.js").Kernel} Kernel */
-/** @typedef {import("./schema.js").Shared} Shared */
 
 /** @typedef {object} KernelText
  *  @property {Kernel} kernel

@@ -4,21 +4,23 @@
 // more
 // closely fills as small a part of its textures as that takes.
 
-import { needed } from "./addons.js";
 import { isSize, PLAIN } from "./binder.js";
 import { failure } from "./context.js";
+import { complaintsOf } from "./edits.js";
 import { headerNames, shiftAfter, whole } from "./formulas.js";
 import { stagesOf, toES } from "./kernel_texts.js";
 import { setUniform } from "./programs.js";
 import { roundedOutputs } from "./textures.js";
+
+/** @import { Wired } from "./binder.js"
+ *  @import { Program } from "./programs.js"
+ *  @import { Result, Texture } from "./textures.js" */
 
 // ── Programs with what is chosen written in, where a program draws: engine/kernels.py.
 //
 // A software renderer goes both ways of every `if`: what was not chosen costs as much as what was, unless
 // its compiler can see that it never happens. A kernel that is drawn again and again with the same
 // checkboxes, menus and wires gets a program of its own for them, compiled behind the one that is drawn.
-
-/** @typedef {import("./programs.js").Program} Program */
 
 const OFTEN = 3; // draws with the same choices, after which they are written in
 const MAX_PROGRAMS = 8; // programs with choices that are remembered of one without
@@ -83,8 +85,6 @@ const texts = ({ texts: [vertex, fragment] }, choices) =>
 //
 // After n steps the next comparison is about √n steps away, since its answer is waited for.
 
-/** @typedef {import("./textures.js").Result} Result */
-
 const BLOCK = 8; // texels a side that one fragment compares
 const CHANGED = [{ name: "k_changed", format: "r8" }];
 
@@ -132,8 +132,6 @@ export const createSettling = (gl, textures, binder, fill, programOf) => {
 
 // ── Runs kernels
 
-/** @typedef {import("./textures.js").Texture} Texture */
-/** @typedef {import("./binder.js").Wired} Wired */
 /** @typedef {ReturnType<typeof createKernels>} Kernels */
 
 /** What is yielded after each piece of work: whose, and how much. What is sent back says whether others may
@@ -283,7 +281,7 @@ export const createKernels = (context, textures, programs, binder, shared, often
 
   /** @param {import("./kernel_texts.js").KernelText} text @param {Program} program */
   const refused = (text, program) => {
-    const complaints = needed("edits").complaintsOf(text, program, shared, {});
+    const complaints = complaintsOf(text, program, shared, {});
     const [{ file, line, message }] = complaints;
     return failure("shader", `${file}:${line}: ${message}`, { complaints });
   };

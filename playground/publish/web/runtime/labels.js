@@ -1,6 +1,6 @@
 // labels.js -- how parameters are named, sorted and found in a panel, as workbench/parameter_list.py does.
 
-/** @typedef {import("./schema.js").Shown} Shown */
+/** @import { Shown } from "./schema.js" */
 
 /** A name as a panel writes it: rock_from as "Rock from"; one in mixed case as it is.
  *  @param {string} name */

@@ -3,7 +3,6 @@
 import { clamp, general } from "./numbers.js";
 import { fill, measured } from "./words.js";
 
-/** @typedef {import("./schema.js").Value} Value */
 /** @typedef {{size: [number, number], channels: number, data: ArrayLike<number>}} Texels */
 /** @typedef {{path: string, output: string, label: string, height: boolean}} Texture */
 

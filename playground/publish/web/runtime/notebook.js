@@ -4,7 +4,6 @@
 // notebook_sketch.js. `drawn_by` says who draws. Without widgets, as in HTML that was made of a notebook,
 // `revive` makes a saved figure live.
 
-import "./with_all.js";
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
 import { renderLive } from "./notebook_live.js";

@@ -12,7 +12,8 @@ import { createEngine } from "./engine.js";
 import { followTheme, keepKeys } from "./notebook_sketch.js";
 import { unpackedJson } from "./packed.js";
 
-/** @typedef {import("./session.js").Session} Session */
+/** @import { Session } from "./session.js" */
+
 /** @typedef {{get: (name: string) => any, set: (name: string, value: any) => void, save_changes: () => void,
  *             on: (name: string, act: () => void) => void,
  *             off: (name: string, act: () => void) => void}} Model */

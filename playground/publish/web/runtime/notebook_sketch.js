@@ -17,6 +17,10 @@ import { createTimeline, hasTime } from "./timeline.js";
 import { isSame } from "./values.js";
 import { fill, wordsOf } from "./words.js";
 
+/** @import { Model } from "./notebook_live.js"
+ *  @import { Sketch } from "./schema.js"
+ *  @import { Session } from "./session.js" */
+
 // ── Keys that a figure takes, such as arrows on a slider, from the notebook.
 
 /** Keep keys pressed in an element from the notebook around it, but those held with Ctrl, Alt or Meta, Enter
@@ -86,7 +90,6 @@ export const notebookWords = (language) => ({ ...bookWords(language), ...wordsOf
 // One picture is asked for at a time, and the next is of the newest state: so a drag never queues. The answer
 // is the message with the number of the question; it comes also where the kernel could not draw.
 
-/** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {{drawn: string, error: string}} Answer */
 
 let questions = 0;
@@ -168,8 +171,6 @@ export function createKernelEngine(model, sketches) {
 
 // ── The widget of a sketch, or of two
 
-/** @typedef {import("./session.js").Session} Session */
-/** @typedef {import("./notebook_live.js").Model} Model */
 /** @typedef {Object<string, string>} Words */
 
 const BYTES = 384 * 2 ** 20; // of textures of one widget

@@ -2,6 +2,8 @@
 
 import table from "../../../shader/widgets.json" with { type: "json" };
 
+/** @import { Shown, Value } from "./schema.js" */
+
 // ── The table of widgets, which Python reads as well: see playground/shader/widgets.py.
 
 /** A row: what is true of every parameter with one widget; see `Kind` in playground/shader/widgets.py.
@@ -23,7 +25,6 @@ export const isLog = (widget) => WIDGETS[widget].scale === "log";
 
 // ── A parameter's numbers
 
-/** @typedef {import("./schema.js").Shown} Shown */
 /** @typedef {Pick<Shown, "type" | "widget" | "unit" | "parts" | "ranges" | "step">} Ranged */
 
 /** A slider's way: `value` of a share of it from 0 to 1, `share` of a value.
@@ -216,8 +217,6 @@ export function fromHex(text, raw) {
 }
 
 // ── Values as text, and back: as --set takes them, as a link holds them, as TOML has them.
-
-/** @typedef {import("./schema.js").Value} Value */
 
 const MAX_METRES = 1e9; // [m] of the terrain
 

@@ -1,6 +1,5 @@
 // page.js -- the entry of a page about one sketch: reads its data, and brings engine and interface together.
 
-import "./with_editing.js";
 import { make } from "./dom.js";
 import { EDITOR_WORDS } from "./editor_words.js";
 import { createEngine } from "./engine.js";

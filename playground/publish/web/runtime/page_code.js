@@ -4,10 +4,10 @@ import { finished } from "./context.js";
 import { createEditor } from "./editor.js";
 import { createGuard, createRecovery, keyOf } from "./recovery.js";
 
-/** @typedef {import("./engine.js").Engine} Engine */
-/** @typedef {import("./player.js").Player} Player */
-/** @typedef {import("./session.js").Session} Session */
-/** @typedef {import("./editor.js").Editor} Editor */
+/** @import { Editor } from "./editor.js"
+ *  @import { Engine } from "./engine.js"
+ *  @import { Player } from "./player.js"
+ *  @import { Session } from "./session.js" */
 
 /** What is asked of a figure: see figure.js.
  *  @typedef {{session: Session, ask: () => void, player: any, showPoster: (still: boolean) => void,

@@ -6,9 +6,10 @@ import { button, make } from "./dom.js";
 import { grouped, isLike, labelOf, mainLabels, mainRows } from "./labels.js";
 import { fill } from "./words.js";
 
-// ── Repeats that may be stopped early, a slider each; of one that may not, why.
+/** @import { Choice, Shown, Value } from "./schema.js"
+ *  @import { Session } from "./session.js" */
 
-/** @typedef {import("./session.js").Session} Session */
+// ── Repeats that may be stopped early, a slider each; of one that may not, why.
 
 /** Make the sliders. `repeats` gives the iterations in all of each repeat, by path; none before a plan.
  *  @param {Session} session @param {Object<string, string>} words @param {Rows} rows
@@ -63,8 +64,6 @@ export function iterationRows(session, words, rows, repeats) {
 
 // ── The rows of a panel: made when they are first looked at, kept as the session is.
 
-/** @typedef {import("./schema.js").Shown} Shown */
-/** @typedef {import("./schema.js").Value} Value */
 /** @typedef {ReturnType<typeof createRows>} Rows */
 
 /** Make the rows of a session. @param {Session} session @param {Object<string, string>} words */
@@ -156,8 +155,6 @@ export function fold(title, open, inside, name = "section") {
 }
 
 // ── What can be changed of a sketch
-
-/** @typedef {import("./schema.js").Choice} Choice */
 
 /** @typedef {object} PanelOptions
  *  @property {Object<string, string>} words

@@ -11,6 +11,9 @@ import { isOfView } from "./map_view.js";
 import { everyVersion, isLoop, stepsOf } from "./plan_nodes.js";
 import { cameraAt, givenTo, isSame, leavesOf, valuesAt } from "./values.js";
 
+/** @import { LoopStep, PlanNode, Ref, Step } from "./plan_nodes.js"
+ *  @import { Camera, Formula, Kernel, Leaf, Sketch, Value } from "./schema.js" */
+
 // ── The sizes that a kernel takes: playground/shader/expressions.py.
 
 /** @typedef {[number, number, number][]} Runs */
@@ -46,9 +49,6 @@ function above(runs, side) {
 
 // ── What a plan is made for besides its sketch, and checks of it: engine/plan.py.
 
-/** @typedef {import("./schema.js").Sketch} Sketch */
-/** @typedef {import("./schema.js").Value} Value */
-/** @typedef {import("./schema.js").Camera} Camera */
 /** @typedef {[number, number]} Size */
 
 /** @typedef {{size: Size, extent: Size, relief: number, base_elevation: number}} Metres */
@@ -65,7 +65,7 @@ function above(runs, side) {
  *  @property {Object<string, number>} [steps]  iterations after which a repeat stops, by path
  *  @property {boolean} [interpolated]          what a stopped repeat has not computed is filled in
  *  @property {{path: string, output: string, values: Object<string, Value>} | null} [map]
- *  @property {import("./with_plain.js").Live} [live]  what the pointer and the clock of the page say */
+ *  @property {import("./plain.js").Live} [live]  what the pointer and the clock of the page say */
 
 export const MAX_SIDE = 16384;
 
@@ -131,14 +131,6 @@ function repeatedPaths(sketch) {
 }
 
 // ── Fills in a sketch's plan
-
-/** @typedef {import("./schema.js").Kernel} Kernel */
-/** @typedef {import("./schema.js").Leaf} Leaf */
-/** @typedef {import("./schema.js").Formula} Formula */
-/** @typedef {import("./plan_nodes.js").Step} Step */
-/** @typedef {import("./plan_nodes.js").LoopStep} LoopStep */
-/** @typedef {import("./plan_nodes.js").PlanNode} PlanNode */
-/** @typedef {import("./plan_nodes.js").Ref} Ref */
 
 /** @typedef {object} Plan
  *  @property {PlanNode[]} nodes      all of them; `needed` of plan_nodes.js tells those of a texture

@@ -1,7 +1,7 @@
 // plan_nodes.js -- the steps and loops of a plan: what they are, and how to go through them.
 
-/** @typedef {import("./schema.js").Source} Source */
-/** @typedef {import("./schema.js").Value} Value */
+/** @import { Source, Value } from "./schema.js" */
+
 /** @typedef {{path: string, output: string}} Ref */
 
 /** A leaf pass made concrete.

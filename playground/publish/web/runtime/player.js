@@ -1,18 +1,22 @@
 // player.js -- one sketch in an engine: its state, its picture, its texts.
 
-import { needed as addOn } from "./addons.js";
 import { PLAIN } from "./binder.js";
 import { failure } from "./context.js";
 import { readTexture } from "./draws.js";
+import { tried } from "./edits.js";
 import { createExecution } from "./execution.js";
 import { readKernel } from "./kernel_texts.js";
+import { usualOf } from "./plain.js";
 import { makePlan } from "./plan.js";
 import { isLoop, needed, stepsOf } from "./plan_nodes.js";
 import { keysOf } from "./staleness.js";
 
-// ── Which exported frame of a film or a sound shows at a time: engine/time_sources.py.
+/** @import { KernelText } from "./kernel_texts.js"
+ *  @import { Plan } from "./plan.js"
+ *  @import { Step } from "./plan_nodes.js"
+ *  @import { Camera, DataTexture, Kernel } from "./schema.js" */
 
-/** @typedef {import("./schema.js").DataTexture} DataTexture */
+// ── Which exported frame of a film or a sound shows at a time: engine/time_sources.py.
 
 // [s] A time is meant to be that of the frame that begins so little later.
 const MARGIN = 1e-6;
@@ -58,8 +62,6 @@ export function playingOf({ clock, values: paths }, values) {
 // camera. Its
 // texels are read once for each place of the eye; an eye outside the terrain is left where it is.
 
-/** @typedef {import("./plan.js").Plan} Plan */
-/** @typedef {import("./schema.js").Camera} Camera */
 /** @typedef {{path: string, output: string}} Ref */
 
 const CLEARANCE = 0.002; // above the ground, as a share of the eye's distance from its target
@@ -150,9 +152,6 @@ export const createEyeHeight = (namesOf) => {
 
 // ── One sketch in an engine
 
-/** @typedef {import("./plan_nodes.js").Step} Step */
-/** @typedef {import("./schema.js").Kernel} Kernel */
-/** @typedef {import("./kernel_texts.js").KernelText} KernelText */
 /** @typedef {ReturnType<typeof createExecution>} Execution */
 
 /** @typedef {object} Player
@@ -171,7 +170,7 @@ export const createEyeHeight = (namesOf) => {
  *  @property {(context2d: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D) => void} drawTo
  *  @property {() => Uint8Array} picture             RGBA, row 0 south
  *  @property {(ref: Ref) => {size: [number, number], channels: number, data: Float32Array}} read
- *  @property {(file: string, text: string) => Promise<import("./with_editing.js").Edit>} edit
+ *  @property {(file: string, text: string) => Promise<import("./edits.js").Edit>} edit
  *  @property {() => import("./programs.js").Program[]} programs   that it may need again
  *  @property {() => void} forget                    what lived in a context that was lost
  *  @property {() => void} close */
@@ -223,7 +222,7 @@ export const createPlayer = (engine, sketch, onClose) => {
         }) };
       }
       const { live = {} } = player.state;
-      if (kernel.kind === "plain_fragment") return addOn("plain").usualOf(plan, step, frame, live);
+      if (kernel.kind === "plain_fragment") return usualOf(plan, step, frame, live);
       /** @type {Object<string, any>} */
       const found = {};
       for (const name of textOf(kernel).given) {
@@ -427,7 +426,7 @@ export const createPlayer = (engine, sketch, onClose) => {
 
     edit: async (file, text) => {
       const texts = { ...player.texts, [file]: text };
-      const { kernels, ...found } = await addOn("edits").tried(engine, sketch.kernels, textOf, texts);
+      const { kernels, ...found } = await tried(engine, sketch.kernels, textOf, texts);
       if (!found.errors.length) {
         stop();
         player.texts = texts;

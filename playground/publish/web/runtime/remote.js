@@ -6,7 +6,8 @@ import { isLike, labelOf } from "./labels.js";
 import { isSame, shownValue, toldValue } from "./numbers.js";
 import { PAGE_WORDS } from "./page_words.js";
 
-/** @typedef {import("./numbers.js").Told} Told */
+/** @import { Told } from "./numbers.js" */
+
 /** @typedef {{one: Told, label: string, element: HTMLElement, told: (value: any) => void}} Row */
 
 const ECHO = 300; // [ms] after a change of its own that a row takes none from the window: they are older

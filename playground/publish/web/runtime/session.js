@@ -2,10 +2,8 @@
 
 import { fits } from "./numbers.js";
 
-/** @typedef {import("./schema.js").Shown} Shown */
-/** @typedef {import("./schema.js").Sketch} Sketch */
-/** @typedef {import("./schema.js").Value} Value */
-/** @typedef {import("./schema.js").Camera} Camera */
+/** @import { Camera, Shown, Sketch, Value } from "./schema.js" */
+
 /** What can be undone: which sketch, values over its own by path of a row, repeats stopped early by path.
  *  @typedef {{index: number, edits: Map<string, Value>, steps: Map<string, number>}} Step */
 /** @typedef {{path: string, output: string, values: Object<string, Value>}} MapShown */

@@ -1,5 +1,7 @@
 // sketch_files.js -- the texts that a sketch is made of: its own first, then kernels, then what they include.
 
+/** @import { Shared, Sketch } from "./schema.js" */
+
 // ── What an edit changes that Python reads, and so has no effect in the page.
 
 /** @typedef {{key: "header" | "annotation" | "initial" | "added" | "removed", names: string[]}} Notice */
@@ -50,8 +52,6 @@ function uniforms(text) {
 
 // ── The texts that a sketch is made of
 
-/** @typedef {import("./schema.js").Sketch} Sketch */
-/** @typedef {import("./schema.js").Shared} Shared */
 /** @typedef {{key: "ownFiles" | "kernelFiles" | "libraryFiles", files: string[]}} FileGroup */
 
 /** Every file that a file includes, itself first, each once.

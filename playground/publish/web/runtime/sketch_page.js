@@ -8,6 +8,9 @@ import { createSession } from "./session.js";
 import { createTimeline, hasTime, stepped } from "./timeline.js";
 import { fill } from "./words.js";
 
+/** @import { Engine, Figure, Player } from "./figure.js"
+ *  @import { Page } from "./schema.js" */
+
 // ── The pictures on buttons, drawn as lines.
 
 /** Lines in a square of 16 by 16. */
@@ -212,11 +215,6 @@ export function recallTheme() {
 }
 
 // ── A page about one sketch
-
-/** @typedef {import("./schema.js").Page} Page */
-/** @typedef {import("./figure.js").Engine} Engine */
-/** @typedef {import("./figure.js").Figure} Figure */
-/** @typedef {import("./figure.js").Player} Player */
 
 /** @typedef {object} PageOptions
  *  @property {Object<string, string>} words

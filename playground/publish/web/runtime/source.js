@@ -3,6 +3,8 @@
 // The driver is given `code`: comments, #include, #line and the project's pragmas are blanked, lines stay. A
 // backslash at a line's end joins it to the next; the joined line is in the first one's place.
 
+/** @import { Shared, Value } from "./schema.js" */
+
 // ── Joins calls of function-like macros that span lines: shader/source.py.
 
 const DEFINE = /^\s*#\s*define\s+(\w+)(\(|\s+(\w+)\s*$)?/;
@@ -70,7 +72,6 @@ function openAtEnd(code, pattern) {
 
 // ── Flattens a GLSL file's includes, so that each line knows its file and line
 
-/** @typedef {import("./schema.js").Shared} Shared */
 /** What the driver is given of a line, the file and the line in it, from 1, and the line as written.
  *  @typedef {{code: string, file: string, line: number, raw: string}} Line */
 /** @typedef {{lines: Line[], names: Set<string>}} Flat  names: every identifier in the code */
@@ -236,8 +237,6 @@ function strippedEnd(text) {
 }
 
 // ── Reads the uniforms of a flat text, with initial values: shader/declarations.py.
-
-/** @typedef {import("./schema.js").Value} Value */
 
 /** A uniform with what it has where nothing sets it; of a sampler, and of an array, null.
  *  @typedef {{name: string, type: string, value: Value | null, file: string, line: number}} Declared */

@@ -7,11 +7,8 @@
 
 import { everyVersion, isLoop, isRef, sourcesOf, stepsOf } from "./plan_nodes.js";
 
-/** @typedef {import("./schema.js").Kernel} Kernel */
-/** @typedef {import("./schema.js").Source} Source */
-/** @typedef {import("./plan_nodes.js").Step} Step */
-/** @typedef {import("./plan_nodes.js").LoopStep} LoopStep */
-/** @typedef {import("./plan_nodes.js").PlanNode} PlanNode */
+/** @import { LoopStep, PlanNode, Step } from "./plan_nodes.js"
+ *  @import { Kernel, Source } from "./schema.js" */
 
 /** What an engine knows of steps and kernels.
  *  @typedef {object} Known

@@ -4,10 +4,13 @@ import { fieldFor, moved, sunMoved, turned, zoomed } from "./camera.js";
 import { clamp } from "./numbers.js";
 import { cameraAt } from "./values.js";
 
-// ── What shaders are told of the pointer and the clock of the page, as the live window tells it.
+/** @import { Eye } from "./camera.js"
+ *  @import { FigureMap } from "./figure_map.js"
+ *  @import { Camera, Sketch } from "./schema.js"
+ *  @import { Session } from "./session.js"
+ *  @import { Live } from "./plain.js" */
 
-/** @typedef {import("./with_plain.js").Live} Live */
-/** @typedef {import("./schema.js").Sketch} Sketch */
+// ── What shaders are told of the pointer and the clock of the page, as the live window tells it.
 
 /** Meanings of usual uniforms that the pointer changes: _MOUSE of sketch/traits.py. */
 const POINTED = new Set(["mouse", "hover", "hover_share", "drag", "buttons"]);
@@ -214,11 +217,6 @@ export function followGestures(element, meanings, { sideways = false, wheel = ()
 }
 
 // ── What gestures over a figure change
-
-/** @typedef {import("./schema.js").Camera} Camera */
-/** @typedef {import("./session.js").Session} Session */
-/** @typedef {import("./figure_map.js").FigureMap} FigureMap */
-/** @typedef {import("./camera.js").Eye} Eye */
 
 const GRAB = 6; // [CSS pixels] from a line between two pictures
 

@@ -4,8 +4,8 @@ import { button, make } from "./dom.js";
 import { clamp } from "./numbers.js";
 import { fill } from "./words.js";
 
-/** @typedef {import("./figure.js").Figure} Figure */
-/** @typedef {import("./schema.js").Sketch} Sketch */
+/** @import { Figure } from "./figure.js"
+ *  @import { Sketch } from "./schema.js" */
 
 const DEFAULT_DURATION = 10; // [s] that the bar of a sketch without keyframes shows at least
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 10];

@@ -5,6 +5,8 @@ import { createSession } from "./session.js";
 import { leavesOf } from "./values.js";
 import { fill } from "./words.js";
 
+/** @import { Sketch, Value } from "./schema.js" */
+
 // ── What is said of a work that was checked, as playground/course/tasks.py does.
 //
 // The words are those of [tasks] in course/labels, which a book's scripts hold.
@@ -61,9 +63,6 @@ function whatOf(found, check, say, comma) {
 //
 // The same formula may be written in another order, which moves a float's last digit and so a pixel by a
 // level, or an edge by a pixel. What is asked for is a picture that nobody could tell from the right one.
-
-/** @typedef {import("./schema.js").Sketch} Sketch */
-/** @typedef {import("./player.js").Player} Player */
 
 export const LEVELS = 3; // of 255 that no eye sees
 export const SHARE = 0.002; // of all pixels that may differ by more
@@ -125,8 +124,6 @@ export async function createCheck(engine, sketch, state) {
 }
 
 // ── Judges a reader's work as tasks/judge.py does, and says how near a picture is as score.py
-
-/** @typedef {import("./schema.js").Value} Value */
 
 /** What a work is judged by.
  *  @typedef {object} PageCheck

@@ -7,13 +7,12 @@ import { fits, isLog, lengthOf, WIDGETS } from "./numbers.js";
 import { declaredUniforms, flatten } from "./source.js";
 import { leavesOf } from "./values.js";
 
+/** @import { Kernel, Leaf, Node, Shown, Sketch, Uniform, Value } from "./schema.js"
+ *  @import { Line } from "./source.js" */
+
 // ── Reads what a text says of its parameters behind //!: rows as Python makes them, of texts
 // that are edited in a page. See playground/shader/header.py and playground/shader/declarations.py.
 
-/** @typedef {import("./source.js").Line} Line */
-/** @typedef {import("./schema.js").Value} Value */
-/** @typedef {import("./schema.js").Shown} Shown */
-/** @typedef {import("./schema.js").Uniform} Uniform */
 /** What is true of a parameter wherever its kernel stands: its uniform, and of its row all but its place.
  *  @typedef {Pick<Shown, "label" | "group" | "description" | "widget" | "type" | "ranges" | "step" | "unit"
  *            | "choices" | "parts" | "raw" | "value">} Facts */
@@ -176,11 +175,6 @@ function numbersOf(name, word, given, count, line) {
 }
 
 // ── Gives a sketch the parameters of a text that is edited in the page
-
-/** @typedef {import("./schema.js").Kernel} Kernel */
-/** @typedef {import("./schema.js").Leaf} Leaf */
-/** @typedef {import("./schema.js").Node} Node */
-/** @typedef {import("./schema.js").Sketch} Sketch */
 
 /** What a text says of a kernel: its own parameters, and all names that are declared with those of includes.
  *  @typedef {{written: Written[], names: Set<string>}} Said */

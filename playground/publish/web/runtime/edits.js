@@ -1,15 +1,15 @@
-// with_editing.js -- the add-on of pages whose texts may be edited.
+// edits.js -- edited texts: their kernels are compiled, what is wrong is told by line.
 
-import { addOns } from "./addons.js";
 import { complaints, libraryOf } from "./complaints.js";
 import { readKernel, stagesOf } from "./kernel_texts.js";
+
+/** @import { KernelText } from "./kernel_texts.js"
+ *  @import { Kernel } from "./schema.js"
+ *  @import { Flat } from "./source.js" */
 
 // ── Finds a kernel's function that has not the form its header asks for: shader/wrap.py.
 //
 // A driver would complain of the lines that call it, which no author has written.
-
-/** @typedef {import("./schema.js").Kernel} Kernel */
-/** @typedef {import("./source.js").Flat} Flat */
 
 const PRAGMA = /^\s*#\s*pragma\s+(?:kernel|draw|compute)\b/;
 const QUALIFIERS = ["const", "highp", "mediump", "lowp"];
@@ -115,7 +115,6 @@ function unsigned({ lines }, message, index = Math.max(lines.findIndex(({ raw })
 /** @typedef {{file: string, line: number, column?: number, message: string, kernel: string}} Complaint
  *  line 0: of no line */
 /** @typedef {{errors: Complaint[], programs: number}} Edit  programs: how many were compiled */
-/** @typedef {import("./kernel_texts.js").KernelText} KernelText */
 
 /** Compile what edited texts change; nothing else changes.
  *  @param {import("./engine.js").Engine} engine @param {Kernel[]} all
@@ -175,7 +174,3 @@ const distinct = (found) => {
     return isNew;
   });
 };
-
-// ── The add-on of pages whose texts may be edited
-
-addOns.edits = { tried, complaintsOf };

@@ -1,17 +1,20 @@
-// with_plain.js -- the add-on of pages with plain shaders, other tools' among them.
+// plain.js -- plain shaders, other tools' among them: what they are given, the shapes of their textures.
 
-import { addOns } from "./addons.js";
 import { PLAIN } from "./binder.js";
 import { unitVector } from "./camera.js";
 import { failure } from "./context.js";
 import { stepsOf } from "./plan_nodes.js";
 import { setUniform } from "./programs.js";
 
+/** @import { Job } from "./kernels.js"
+ *  @import { Plan } from "./plan.js"
+ *  @import { Step } from "./plan_nodes.js"
+ *  @import { Sampling } from "./schema.js"
+ *  @import { Texture } from "./textures.js" */
+
 // ── Copies textures of two dimensions into cubes, volumes, arrays and lines: engine/textures.py.
 //
 // WebGL has no textures of one dimension: a line is one row, which the text reads at its middle (lines.js).
-
-/** @typedef {import("./textures.js").Texture} Texture */
 
 const FACES = 6;
 
@@ -84,9 +87,6 @@ export const createShapes = ({ gl, make, limits }, textures) => {
 
 // ── What other tools' shaders are given by their own names: Runner._usual of engine/runner.py.
 
-/** @typedef {import("./plan.js").Plan} Plan */
-/** @typedef {import("./plan_nodes.js").Step} Step */
-
 /** What only somebody at the page has; without them all is at rest. Pixels from the lower left.
  *  @typedef {object} Live
  *  @property {number[]} [mouse]   the pointer, then where it was pressed
@@ -154,10 +154,7 @@ export function usualOf(plan, step, frame, live) {
 
 // ── Runs plain shaders, other tools' among them: a triangle over the whole picture, once.
 //
-// What their uniforms get is theirs by name (with_plain.js); a sampler that nothing feeds reads black.
-
-/** @typedef {import("./kernels.js").Job} Job */
-/** @typedef {import("./schema.js").Sampling} Sampling */
+// What their uniforms get is theirs by name; a sampler that nothing feeds reads black.
 
 const MAX_LEVELS = 12; // of a pyramid of another tool
 const VALUE = "value: ", DEPTH = "depth: ", SIZES = "sizes: ";
@@ -311,7 +308,3 @@ export const createPlain = (context, textures, images, binder, kernels) => {
 
   return { run, clear };
 };
-
-// ── The add-on of pages with plain shaders, other tools' among them
-
-addOns.plain = { createPlain, usualOf };
