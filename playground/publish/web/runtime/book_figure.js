@@ -180,6 +180,16 @@ export function makeSlider({ label, min, max, step, value, words, said, changed 
   return { element: make("div", { className: "controls" }, back, range, on, output), go };
 }
 
+/** Two pictures one over the other, and the line between. @param {HTMLElement} box
+ *  @param {Object<string, string>} words */
+export function makeSwipe(box, words) {
+  const range = make("input", { type: "range", min: "0", max: "100", value: "50", "aria-label": words.swipe });
+  const show = () => box.style.setProperty("--at", `${range.value}%`);
+  range.oninput = show;
+  show();
+  return make("div", { className: "controls" }, range);
+}
+
 /** What sets everything back, the camera too. @param {Session} session @param {Object<string, string>} words
  *  @param {() => void} [more] */
 export const makeReset = (session, words, more = () => {}) =>

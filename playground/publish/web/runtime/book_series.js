@@ -1,6 +1,6 @@
 // book_series.js -- live series of a book: iterations stopped early, a parameter swept, variants compared.
 
-import { makePicture, makeReset, makeSlider } from "./book_figure.js";
+import { makePicture, makeReset, makeSlider, makeSwipe } from "./book_figure.js";
 import { button, make } from "./dom.js";
 import { clamp, isWhole, toHex, unitOf, write, written } from "./numbers.js";
 import { createSession } from "./session.js";
@@ -158,14 +158,7 @@ export function liveCompare(room) {
     if (label) side.append(make("p", { className: "side-label" }, label.cloneNode(true)));
     return figure;
   });
-  if (swiped) {
-    const at = (/** @type {number} */ share) => box.style.setProperty("--at", `${share}%`);
-    const range = make("input",
-      { type: "range", min: "0", max: "100", value: "50", "aria-label": words.swipe });
-    range.oninput = () => at(+range.value);
-    at(50);
-    host.append(make("div", { className: "controls" }, range));
-  }
+  if (swiped) host.append(makeSwipe(box, words));
   host.append(makeReset(sessions[0], words, () => sessions.forEach((session) => session.setCamera(null))));
   return Promise.all(figures.map((figure) => figure.start()));
 }

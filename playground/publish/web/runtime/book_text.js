@@ -160,7 +160,7 @@ export function withLines(text, { first = 0, rest = 0, indent = 0 }, shown) {
 
 /** The lines that are shown of a file. @param {string} text of the file
  *  @param {Pick<LiveBlock, "first" | "rest" | "indent">} block */
-export function linesIn(text, { first = 0, rest = 0, indent = 0 }) {
+function linesIn(text, { first = 0, rest = 0, indent = 0 }) {
   const lines = text.split("\n"), blanks = " ".repeat(indent);
   return lines.slice(first, lines.length - rest)
     .map((line) => (line.startsWith(blanks) ? line.slice(indent) : line)).join("\n");

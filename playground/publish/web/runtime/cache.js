@@ -14,7 +14,7 @@ const MAX_STATES = 48; // of one loop
 const MAX_KEYS = 2; // of one loop's path
 
 /** @param {number} limit bytes @param {import("./textures.js").Textures} textures */
-export const createKeptStates = (limit, textures) => {
+const createKeptStates = (limit, textures) => {
   /** @type {Map<string, Map<string, Kept>>} */
   const known = new Map();
 

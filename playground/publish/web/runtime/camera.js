@@ -28,7 +28,7 @@ export function unitVector([azimuth, elevation]) {
 
 /** The cosine and the sine of an angle; exact at quarter turns.
  *  @param {number} degrees @returns {[number, number]} */
-export function cosSin(degrees) {
+function cosSin(degrees) {
   const rest = degrees % 360;
   const quarters = Math.floor(rest / 90 + 0.5);
   const x = (rest - 90 * quarters) * (Math.PI / 180);

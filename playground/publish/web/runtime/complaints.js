@@ -32,7 +32,7 @@ const unknown = (head) => UNKNOWN.exec(head)?.slice(1).find(Boolean) || "";
 
 /** Leave out what follows from an unknown name, and all but the first entry of each.
  *  @param {LogEntry[]} entries @returns {LogEntry[]} */
-export function withoutConsequences(entries) {
+function withoutConsequences(entries) {
   const seen = new Set();
   let [line, column] = [0, 0];  // of the cause
   return entries.filter((entry) => {

@@ -23,7 +23,7 @@ const PAD = 500; // pixels of a drag through the range of a number that has a pa
 export const LONG = 4;
 
 /** @param {Shown} one @param {Line} line */
-export function numberLine(one, { part, largest, changed, name = "", unit = unitOf(one) }) {
+function numberLine(one, { part, largest, changed, name = "", unit = unitOf(one) }) {
   const { control, limits } = WIDGETS[one.widget], whole = isWhole(one.type);
   const range = limits?.[part] ?? rangeOf(one, part);
   const scale = ["direction", "point"].includes(control) ? null : scaleOf(one, part); // those have a pad
@@ -116,7 +116,7 @@ export function directionAt(right, up) {
 
 /** The ranges of a point's two numbers.
  *  @param {Shown} one @returns {[number, number][]} */
-export const axesOf = (one) => [0, 1].map((part) => rangeOf(one, part) ?? [0, 1]);
+const axesOf = (one) => [0, 1].map((part) => rangeOf(one, part) ?? [0, 1]);
 
 /** A number in as many places as a pad can be pointed to.
  *  @param {number} number @param {[number, number]} range */
@@ -127,7 +127,7 @@ export function rounded(number, [low, high]) {
 
 /** Make a pad; `changed` gets the new value of each drag.
  *  @param {Shown} one @param {(value: number[]) => void} changed @returns {Pad} */
-export function makePad(one, changed) {
+function makePad(one, changed) {
   const sky = one.widget === "direction";
   const dot = svg("circle", { r: 0.11, class: "dot" });
   const lines = sky

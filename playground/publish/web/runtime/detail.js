@@ -64,7 +64,7 @@ export function ranges() {
 
 /** Whether a tile is at a side of a terrain of ny by nx tiles.
  *  @param {number} side @param {number} j @param {number} i @param {number} ny @param {number} nx */
-export function isAtRim(side, j, i, ny, nx) {
+function isAtRim(side, j, i, ny, nx) {
   switch (side) {
     case SOUTH: return j === 0;
     case EAST: return i === nx - 1;
@@ -173,7 +173,7 @@ export function stretch(view) {
 /** The boxes of squares: `spans` are the lowest and highest heights, and where they end, in shares of the
  *  terrain's sides, east and north; each begins where the one before ends.
  *  @param {Table} spans @param {View} view @returns {Boxes} */
-export function boxesOf({ size: [nx, ny], data }, view) {
+function boxesOf({ size: [nx, ny], data }, view) {
   const [east, north] = [nx, ny].map((count, axis) => {
     const edges = [0, ...Array.from({ length: count }, (_, k) => data[4 * (axis ? nx * k : k) + 2 + axis])];
     const along = edges.map((share) => share * view.extent[axis]);
@@ -259,7 +259,7 @@ export function visible(boxes, view) {
 
 /** Boxes that hold the walls at the terrain's rim as well: none goes deeper than this, or than the terrain.
  *  @param {Boxes} boxes @param {View} view @returns {Boxes} */
-export function withWalls(boxes, view) {
+function withWalls(boxes, view) {
   const deep = -Math.max(...view.extent);
   return { ...boxes, up: [boxes.up[0].map((each) => Math.min(each, deep)), boxes.up[1]] };
 }

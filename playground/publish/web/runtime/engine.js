@@ -23,7 +23,7 @@ const PROBE = 64 * 1024; // texels that are drawn first of what was never measur
 const MAX_CALL_TIME = 500; // [ms] of one call where nothing waits: watchdogs act after 2000
 
 /** What kernels took, by their texts: milliseconds a texel. */
-export const createClock = () => {
+const createClock = () => {
   /** @type {Map<string, number>} */
   const costs = new Map();
 

@@ -25,7 +25,7 @@ import { fill } from "./words.js";
  *  @property {() => void} tellBusy                 `waits` or `isOpening` is another */
 
 /** @param {Holder} holder */
-export function holdPlayer({ engine, session, words, tell, takeState, prepare, opened, tellBusy }) {
+function holdPlayer({ engine, session, words, tell, takeState, prepare, opened, tellBusy }) {
   /** @type {Player | null} */
   let player = null;
   let opening = 0, asked = 0, loading = 0, isOpening = false, closed = false;

@@ -166,7 +166,7 @@ const functions = (wrap) => {
  *  that,
  *  on one line; the text keeps its lines.
  *  @param {string} text without comments @param {Map<string, Wrap>} samplers */
-export const filteredByHand = (text, samplers) => {
+const filteredByHand = (text, samplers) => {
   const names = reached(text, samplers), list = [...names.keys()].join("|");
   const calls = new RegExp(`\\btexture(?:Lod|Grad)?\\s*\\(\\s*(${list})\\b(?=\\s*,)`, "g");
   const changed = text.replace(calls, (_, name) => `k_linear_${names.get(name)}(${name}`);

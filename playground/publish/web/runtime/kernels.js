@@ -91,7 +91,7 @@ const CHANGED = [{ name: "k_changed", format: "r8" }];
 /** @param {WebGL2RenderingContext} gl @param {import("./textures.js").Textures} textures
  *  @param {import("./binder.js").Binder} binder @param {() => void} fill
  *  @param {() => import("./programs.js").Program} programOf of changed.frag */
-export const createSettling = (gl, textures, binder, fill, programOf) => {
+const createSettling = (gl, textures, binder, fill, programOf) => {
   /** Whether a bit of a texel differs; another framebuffer and program stay bound.
    *  @param {Result} now @param {Result} before */
   const differ = (now, before) => {

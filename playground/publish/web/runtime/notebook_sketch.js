@@ -4,7 +4,7 @@
 // the kernel draws; `sides` names the traits with values by path, one for each sketch; `camera`, `time` and
 // `playing` are those of all.
 
-import { createBookRecovery, makePicture, makeReset, makeRows } from "./book_figure.js";
+import { createBookRecovery, makePicture, makeReset, makeRows, makeSwipe } from "./book_figure.js";
 import { bookWords } from "./book_words.js";
 import { look } from "./camera.js";
 import { make } from "./dom.js";
@@ -96,7 +96,7 @@ let questions = 0;
 const mine = Math.random().toString(36).slice(2); // several views of a widget hear each other's answers
 
 /** @param {any} model of the widget @param {Sketch[]} sketches by side */
-export function createKernelEngine(model, sketches) {
+function createKernelEngine(model, sketches) {
   /** @type {Map<string, (answer: Answer, buffers: DataView[]) => void>} */
   const waiting = new Map();
   const hear = (/** @type {Answer} */ answer, /** @type {DataView[]} */ buffers) => {
@@ -340,15 +340,6 @@ function presets(session, words) {
   return menu;
 }
 
-/** Two pictures one over the other, and the line between. @param {HTMLElement} box @param {Words} words */
-function swiper(box, words) {
-  const range = make("input", { type: "range", min: 0, max: 100, value: 50, "aria-label": words.swipe });
-  const show = () => box.style.setProperty("--at", `${range.value}%`);
-  range.oninput = show;
-  show();
-  return make("div", { className: "controls" }, range);
-}
-
 /** Make all of a widget in its element.
  *  @param {{model: Model, el: HTMLElement}} cell @param {string} url of the picture
  *  @param {Sketch[]} sketches @param {ReturnType<typeof drawer>} drawing @param {Words} words */
@@ -375,7 +366,7 @@ function build({ model, el }, url, sketches, { engine, by, why }, words) {
     if (names[at]) side.append(make("p", { className: "side-label" }, names[at]));
     return figure;
   });
-  if (swiped) host.append(swiper(box, words));
+  if (swiped) host.append(makeSwipe(box, words));
   const timeline = boundTimeline(model, figures[0], words);
   timeline.element.hidden = !sketches.some(hasTime);
   const mistake = make("p", { className: "mistake", role: "status" });

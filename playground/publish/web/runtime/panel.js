@@ -14,7 +14,7 @@ import { fill } from "./words.js";
 /** Make the sliders. `repeats` gives the iterations in all of each repeat, by path; none before a plan.
  *  @param {Session} session @param {Object<string, string>} words @param {Rows} rows
  *  @param {() => Map<string, number>} repeats */
-export function iterationRows(session, words, rows, repeats) {
+function iterationRows(session, words, rows, repeats) {
   const body = make("div", {});
   let known = "";
 
@@ -67,7 +67,7 @@ export function iterationRows(session, words, rows, repeats) {
 /** @typedef {ReturnType<typeof createRows>} Rows */
 
 /** Make the rows of a session. @param {Session} session @param {Object<string, string>} words */
-export function createRows(session, words) {
+function createRows(session, words) {
   /** @type {[Element, () => void][]} what is shown, and what makes it as the session is */
   let shown = [];
 

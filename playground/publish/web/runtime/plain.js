@@ -36,14 +36,14 @@ function misfit(shape, [width, height]) {
 
 /** A shape's own size in texels, by the size of the texture that holds it.
  *  @param {string} shape @param {[number, number]} size @returns {[number, number, number]} */
-export function shapedSize(shape, [width, height]) {
+function shapedSize(shape, [width, height]) {
   if (!shape) return [width, height, 1];
   const deep = shape === "volume" ? width : shape === "layers" ? Math.floor(height / width) : 1;
   return [width, shape === "line" ? 1 : width, deep];
 }
 
 /** @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures */
-export const createShapes = ({ gl, make, limits }, textures) => {
+const createShapes = ({ gl, make, limits }, textures) => {
   /** @type {Object<string, number>} */
   const targets = {
     cube: gl.TEXTURE_CUBE_MAP, volume: gl.TEXTURE_3D, layers: gl.TEXTURE_2D_ARRAY, line: gl.TEXTURE_2D,

@@ -70,13 +70,13 @@ function above(runs, side) {
 export const MAX_SIDE = 16384;
 
 /** @param {number} time */
-export function checkedTime(time) {
+function checkedTime(time) {
   if (!Number.isFinite(time)) throw planError(`time ${time}: expected a number of seconds`, "");
   return time;
 }
 
 /** @param {[number, number]} frame @returns {[number, number]} */
-export function checkedFrame([width, height]) {
+function checkedFrame([width, height]) {
   const fits = [width, height].every((side) => Number.isInteger(side) && side >= 1 && side <= MAX_SIDE);
   if (fits) return [width, height];
   throw planError(`a picture of ${width} x ${height} pixels; 1 to ${MAX_SIDE} a side were expected`, "");
@@ -106,7 +106,7 @@ const withSides = (wide, size) => [wide, wide * ((size[1] - 1) / Math.max(size[0
 
 /** Return after how many iterations repeats stop, by the paths of what repeats.
  *  @param {Sketch} sketch @param {Object<string, number>} steps */
-export function checkedSteps(sketch, steps) {
+function checkedSteps(sketch, steps) {
   const repeated = repeatedPaths(sketch);
   /** @type {Object<string, number>} */
   const found = {};

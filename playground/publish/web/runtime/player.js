@@ -49,7 +49,7 @@ export function blobAt(texture, playing, time) {
  *  @param {import("./schema.js").Leaf} leaf
  *  @param {Object<string, import("./schema.js").Value>} values of its parameters, by name
  *  @returns {Playing | null} */
-export function playingOf({ clock, values: paths }, values) {
+function playingOf({ clock, values: paths }, values) {
   if (!clock) return null;
   const byPath = new Map(Object.entries(paths).map(([name, path]) => [path, values[name]]));
   const speed = clock.speed === undefined ? undefined : Number(byPath.get(clock.speed));
@@ -68,7 +68,7 @@ const CLEARANCE = 0.002; // above the ground, as a share of the eye's distance f
 const MAX_ELEVATION = 89; // degrees of elevation, at most
 
 /** @param {(kernel: import("./schema.js").Kernel) => Set<string>} namesOf the names in a kernel's text */
-export const createEyeHeight = (namesOf) => {
+const createEyeHeight = (namesOf) => {
   let raisedBy = 0, terrainKey = "", read = "", height = 0;
 
   /** @param {Plan} plan @returns {Ref | null} */

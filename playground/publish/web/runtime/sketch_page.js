@@ -25,7 +25,7 @@ const LINES = {
 
 /** A button with a picture; its label is for those who do not see it, and a tooltip.
  *  @param {keyof typeof LINES} name @param {string} label @param {() => void} act */
-export function iconButton(name, label, act) {
+function iconButton(name, label, act) {
   const drawn = svg(
     "svg",
     { viewBox: "0 0 16 16", class: "icon", "aria-hidden": "true" },
@@ -42,7 +42,7 @@ export function iconButton(name, label, act) {
 
 /** Make the tabs; each element has an id. @param {[string, HTMLElement][]} pages
  *  @param {(chosen: number) => void} changed */
-export function createTabs(pages, changed) {
+function createTabs(pages, changed) {
   const tabs = pages.map(([label, page], at) => {
     const tab = make("button", { type: "button", role: "tab", "aria-controls": page.id }, label);
     page.setAttribute("role", "tabpanel");
@@ -99,7 +99,7 @@ const KEYS = [
 
 /** Act on keys, unless they are typed into a field. @param {Document} document @param {Acts} acts
  *  @param {HTMLElement} canvas */
-export function followKeys(document, acts, canvas) {
+function followKeys(document, acts, canvas) {
   document.addEventListener("keydown", (event) => {
     const { target, key } = event,
       ctrl = event.ctrlKey || event.metaKey;
@@ -131,7 +131,7 @@ export function followKeys(document, acts, canvas) {
 }
 
 /** Make the list of keys, a dialog. @param {Words} words */
-export function keysDialog(words) {
+function keysDialog(words) {
   const line = (/** @type {string} */ keys, /** @type {string} */ meaning) => [
     make("dt", {}, ...keys.split(" | ").map((key) => make("kbd", {}, key))),
     make("dd", {}, meaning),
@@ -175,7 +175,7 @@ const KEY = "playground-theme";
 /** Fill the screen with an element, or no longer. Where a browser fills it with films only, as on some
  *  phones, the element fills the window.
  *  @param {HTMLElement} main @param {(full: boolean) => void} changed */
-export function createFullScreen(main, changed) {
+function createFullScreen(main, changed) {
   const isFull = () => document.fullscreenElement === main || main.classList.contains("filled");
   const show = () => {
     main.classList.toggle("alone", isFull());
@@ -197,7 +197,7 @@ export function createFullScreen(main, changed) {
 }
 
 /** Light if it is dark, and the other way round; the browser remembers it, where it may. */
-export function switchTheme() {
+function switchTheme() {
   const { dataset } = document.documentElement;
   const usual = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
   dataset.theme = (dataset.theme || usual) === "dark" ? "light" : "dark";
@@ -207,7 +207,7 @@ export function switchTheme() {
 }
 
 /** As it was switched before. */
-export function recallTheme() {
+function recallTheme() {
   try {
     const known = localStorage.getItem(KEY);
     if (known === "light" || known === "dark") document.documentElement.dataset.theme = known;

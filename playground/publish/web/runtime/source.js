@@ -13,7 +13,7 @@ const MAX_CALL_LINES = 1000; // that one call may span: an unclosed one must not
 
 /** Lines of code, comments blanked and ASCII only, with each macro call on one line; as many lines.
  *  @param {string[]} codes @returns {string[]} */
-export function withCallsJoined(codes) {
+function withCallsJoined(codes) {
   const found = [...codes];
   /** @type {Set<string>} */
   const macros = new Set();

@@ -122,7 +122,7 @@ function notchesOf(event) {
 /** Follow gestures. @param {HTMLElement} element @param {Meanings} meanings
  *  @param {{sideways?: boolean, wheel?: () => boolean}} [options]
  *  `sideways`: a finger that goes up or down scrolls the page; `wheel`: whether the wheel zooms now */
-export function followGestures(element, meanings, { sideways = false, wheel = () => true } = {}) {
+function followGestures(element, meanings, { sideways = false, wheel = () => true } = {}) {
   /** @type {Map<number, {x: number, y: number}>} */
   const fingers = new Map();
   let mode = "",

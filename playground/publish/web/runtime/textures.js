@@ -16,7 +16,7 @@ import { unpacked } from "./packed.js";
  *  @property {number} steps         a normalised format kept in floats: its steps from 0 to 1; else 0 */
 
 /** @param {import("./context.js").Context} context @returns {(name: string) => Format} */
-export const formatsOf = ({ gl, norm16 }) => {
+const formatsOf = ({ gl, norm16 }) => {
   const any = /** @type {any} */ (gl);
   /** @type {Map<string, Format>} */
   const known = new Map();

@@ -88,7 +88,7 @@ export function difference(one, other) {
 /** Pixels of the pictures that are compared: of the sketch's shape. @param {[number, number]} frame
  *  @param {number} [side]  each way at most
  *  @returns {[number, number]} */
-export function sizeToCompare([width, height], side = PIECE) {
+function sizeToCompare([width, height], side = PIECE) {
   const scale = Math.min(1, side / Math.max(width, height));
   return [Math.max(Math.round(width * scale), 16), Math.max(Math.round(height * scale), 16)];
 }
@@ -320,7 +320,7 @@ export function createScore(engine, solution, begin, { file, answer, starter }) 
 }
 
 /** @param {Uint8Array} target @param {Uint8Array} begin @param {Uint8Array} mine */
-export function scoreOf(target, begin, mine) {
+function scoreOf(target, begin, mine) {
   if (difference(target, mine) <= SHARE) return 100;
   const whole = meanDifference(target, begin);
   return whole ? 100 * Math.max(0, 1 - meanDifference(target, mine) / whole) : 0;
