@@ -168,6 +168,10 @@ def _check_steps(file: TomlFile, key_path: KeyPath, scene: Scene) -> None:
             make_plan(scene.sketch, request)
 
 
+BOTH = -1
+"""The place of a comparison where two pictures are shown at once, with a line between them."""
+
+
 def comparable(first: Scene, second: Scene) -> bool:
     """Return whether a line can part them: one sketch shows both, at one time and from one place."""
     left, other = (

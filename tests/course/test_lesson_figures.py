@@ -11,11 +11,10 @@ import numpy as np
 from playground.course import library
 from playground.course.model import Break, Compare, Exercise, Figure, Scene, Slider, Steps
 from playground.course.read import read_lesson
-from playground.course.scenes import broken, draw
+from playground.course.scenes import BOTH, broken, draw
 from playground.course.window.bugs import BROKEN, FIXED, SHOWN
 from playground.course.window.figure_view import edits_of, map_of, steps_of
 from playground.course.window.panel import play_on
-from playground.course.window.reader import BOTH
 from playground.sketch.find import find
 from playground.studio.edits.edits import Draft, Edits, StoredEdits
 from playground.studio.picture.view import framed

@@ -28,10 +28,9 @@ from playground.course.model import (
     Steps,
 )
 from playground.course.read import read_lesson, summaries
-from playground.course.scenes import Sketches, excerpt
+from playground.course.scenes import BOTH, Sketches, excerpt
 from playground.course.talk.beats import (
     BOARD_WORDS,
-    BOTH,
     CODE_LINES,
     LETTERS,
     MAX_WORDS,

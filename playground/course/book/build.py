@@ -74,22 +74,14 @@ class Album:
 
     folder: Path
     scenes: dict[str, Scene] = field(default_factory=dict)  # file name → what it shows
+    files: dict[str, str] = field(default_factory=dict)  # picture → file name
     _known: dict[tuple[object, ...], str] = field(default_factory=dict)
 
-    def add(self, name: str, scene: Scene) -> str:
-        """Note a picture and return its file's name; the same picture under another name has one file."""
+    def add(self, name: str, scene: Scene) -> None:
+        """Note a picture by its name; the same picture under another name has one file."""
         key = (scene.sketch, scene.pixels, scene.time, scene.steps)
-        if key not in self._known:
-            self._known[key] = f"{name}.webp"
-            self.scenes[f"{name}.webp"] = scene
-        return self._known[key]
-
-    def add_lesson(self, lesson: Lesson) -> dict[str, str]:
-        """Note all pictures of a lesson; return their files' names by their own."""
-        return {
-            picture.name: self.add(f"{lesson.name}-{picture.name}", picture.scene)
-            for picture in pictures_of(lesson)
-        }
+        self.files[name] = file = self._known.setdefault(key, f"{name}.webp")
+        self.scenes.setdefault(file, scene)
 
     def draw(self, engine: Engine, names: Iterable[str], advance: Callable[[], None]) -> None:
         """Draw some of the pictures; raise as ``Engine.render`` does."""
@@ -135,11 +127,6 @@ def larger(scene: Scene) -> Scene:
     """Return a picture with the pixels that the book draws."""
     width, height = scene.pixels
     return replace(scene, pixels=(round(width * SHARPER), round(height * SHARPER)))
-
-
-def of_picture(files: dict[str, str], folder: str) -> Callable[[Picture], str]:
-    """Return what gives a picture's address, from a page's folder."""
-    return lambda picture: f"{folder}/{files[picture.name]}"
 
 
 Entry = tuple[str, str, str, str]
@@ -202,9 +189,7 @@ class Build:
     lessons: dict[str, tuple[Lesson, ...]]  # by language, each in order
     figures: list[ThesisFigure]
     album: Album
-    files: dict[str, dict[str, str]]  # lesson → picture → file
-    gallery: dict[tuple[str, str], str]  # sketch, shot → file
-    heroes: dict[str, tuple[str, Hero]]  # lesson → file, hero
+    heroes: dict[str, Hero]  # by lesson
     answers: str = "inline"  # one of ``blocks.ANSWERS``
 
     @property
@@ -230,21 +215,16 @@ def prepare(
     heroes, sketches = {}, Sketches()
     for lesson in one_language:
         if hero := hero_of(lesson.name, sketches):
-            heroes[lesson.name] = album.add(f"{lesson.name}-hero", hero.scene), hero
-    files = {lesson.name: album.add_lesson(lesson) for lesson in one_language}
+            heroes[lesson.name] = hero
+            album.add(f"{lesson.name}-hero", hero.scene)
+    for lesson in one_language:
+        for picture in pictures_of(lesson):
+            album.add(f"{lesson.name}-{picture.name}", picture.scene)
     figures = thesis_figures() if gallery else []
-    shown = [drawn for figure in figures for drawn in figure.pictures]
-    of_shots = {(d.sketch, d.shot): album.add(f"{d.sketch}-{d.shot}", d.scene) for d in shown}
-    return Build(
-        folder,
-        {k: tuple(v) for k, v in lessons.items()},
-        figures,
-        album,
-        files,
-        of_shots,
-        heroes,
-        answers=answers,
-    )
+    for drawn in (drawn for figure in figures for drawn in figure.pictures):
+        album.add(f"{drawn.sketch}-{drawn.shot}", drawn.scene)
+    ordered = {language: tuple(of_language) for language, of_language in lessons.items()}
+    return Build(folder, ordered, figures, album, heroes, answers)
 
 
 def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambda: None) -> Path:
@@ -254,35 +234,29 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
     """
     _begin(build.folder)
     build.album.draw(engine, build.names, advance)
-    numbers = {lesson.name: numbers_of(engine, lesson) for lesson in next(iter(build.lessons.values()))}
-    live = live_book(next(iter(build.lessons.values())), engine)
-    info = context_info(engine.ctx)
-    written = [f"{PICTURES}/{name}" for name in build.names]
+    one_language = next(iter(build.lessons.values()))
+    numbers = {lesson.name: numbers_of(engine, lesson) for lesson in one_language}
+    live = live_book(one_language, engine)
     books = [
         Book(
             language=language,
             label=labels("book", language),
             lessons=lessons,
             languages=tuple(build.lessons),
-            renderer=info.renderer,
+            renderer=context_info(engine.ctx).renderer,
             gallery=bool(build.figures),
         )
         for language, lessons in build.lessons.items()
     ]
-    for book in books:
-        for name, text in _pages(build, book, numbers, live):
-            _write(build.folder / book.language / name, text.encode())
-            written.append(f"{book.language}/{name}")
-    _write(
-        build.folder / "index.html", cover_page(books, _cover(build, books[0].lessons[0], PICTURES)).encode()
-    )
-    for name in ("book.css", "book.js", "find.js", *FONTS):
-        _write(build.folder / name, (_HERE / name).read_bytes())
-        written.append(name)
-    for name, text in live.files.items():
-        _write(build.folder / name, text.encode())
-        written.append(name)
-    _forget(build.folder, [*written, "index.html"])
+    texts = {
+        f"{book.language}/{name}": text for book in books for name, text in _pages(build, book, numbers, live)
+    }
+    texts["index.html"] = cover_page(books, _cover(build, one_language[0], PICTURES))
+    files = {name: text.encode() for name, text in (texts | live.files).items()}
+    files |= {name: (_HERE / name).read_bytes() for name in ("book.css", "book.js", "find.js", *FONTS)}
+    for name, data in files.items():
+        _write(build.folder / name, data)
+    _forget(build.folder, [*files, *(f"{PICTURES}/{name}" for name in build.names)])
     return build.folder / "index.html"
 
 
@@ -291,42 +265,52 @@ def _pages(
 ) -> Iterator[tuple[str, str]]:
     covers: dict[str, Markup] = {}
     entries: list[Entry] = []
+    folder, album = f"../{PICTURES}", build.album
     for lesson in book.lessons:
-        files = build.files[lesson.name]
-        source = of_picture(files, f"../{PICTURES}")
-        runs = live.blocks[lesson.name]
-
-        def blank(picture: Picture, files: dict[str, str] = files) -> bool:
-            return is_blank(build.album.folder / files[picture.name])
-
-        setting = LessonContext(
-            lesson, book.label, numbers[lesson.name], source, book.anchor, runs, blank, build.answers
-        )
+        setting = _setting(build, book, lesson, numbers[lesson.name], live)
         entries += lesson_entries(lesson, setting)
-        hero = None
-        if hero_picture := build.heroes.get(lesson.name):
-            file, item = hero_picture
-            hero = image(f"../{PICTURES}/{file}", item.alt[lesson.language], HERO)
-        covers[lesson.name] = _cover(build, lesson, f"../{PICTURES}", lazy=True)
-        yield f"{lesson.name}.html", lesson_page(book, lesson, setting, hero)
+        hero = build.heroes.get(lesson.name)
+        shown = _cover(build, lesson, folder, alt=hero.alt[lesson.language]) if hero else None
+        covers[lesson.name] = _cover(build, lesson, folder, lazy=True)
+        yield f"{lesson.name}.html", lesson_page(book, lesson, setting, shown)
     yield "index.html", contents_page(book, covers)
     yield f"{GLOSSARY}.html", glossary_page(book)
     yield "words.js", words_script([*entries, *glossary_entries(book)])
     if build.figures:
 
         def address(drawn: FigurePicture) -> str:
-            return f"../{PICTURES}/{build.gallery[drawn.sketch, drawn.shot]}"
+            return f"{folder}/{album.files[f'{drawn.sketch}-{drawn.shot}']}"
 
         yield f"{FIGURES}.html", gallery_page(book, gallery_html(book, build.figures, address))
 
 
-def _cover(build: Build, lesson: Lesson, folder: str, *, lazy: bool = False) -> Markup:
-    """Return a lesson's hero, or else its first picture, without a text: its title is next to it."""
-    if hero_picture := build.heroes.get(lesson.name):
-        return image(f"{folder}/{hero_picture[0]}", "", HERO, lazy=lazy)
-    picture = pictures_of(lesson)[0]
-    source = of_picture(build.files[lesson.name], folder)(picture)
-    return image(source, "", picture.scene.pixels, lazy=lazy)
+def _setting(
+    build: Build, book: Book, lesson: Lesson, numbers: dict[str, Number], live: LiveBook
+) -> LessonContext:
+    """Return what the blocks of a lesson are written with."""
+    album = build.album
+
+    def file_of(picture: Picture) -> str:
+        return album.files[f"{lesson.name}-{picture.name}"]
+
+    return LessonContext(
+        lesson,
+        book.label,
+        numbers,
+        lambda picture: f"../{PICTURES}/{file_of(picture)}",
+        book.anchor,
+        live.blocks[lesson.name],
+        lambda picture: is_blank(album.folder / file_of(picture)),
+        build.answers,
+    )
+
+
+def _cover(build: Build, lesson: Lesson, folder: str, *, alt: str = "", lazy: bool = False) -> Markup:
+    """Return a lesson's hero, or else its first picture; without a text where its title is next to it."""
+    hero = lesson.name in build.heroes
+    first = None if hero else pictures_of(lesson)[0]
+    name, size = ("hero", HERO) if first is None else (first.name, first.scene.pixels)
+    return image(f"{folder}/{build.album.files[f'{lesson.name}-{name}']}", alt, size, lazy=lazy)
 
 
 def _write(path: Path, data: bytes) -> None:

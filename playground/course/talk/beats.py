@@ -33,12 +33,9 @@ from playground.course.model import (
     Slider,
     Steps,
 )
-from playground.course.scenes import comparable, excerpt
+from playground.course.scenes import BOTH, comparable, excerpt
 from playground.course.tasks import scene_of as begun
 from playground.course.tasks import starter
-
-BOTH = -1
-"""The index of a comparison's picture where both are shown, with a line between them."""
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,8 @@ from PIL import Image, ImageDraw
 
 from playground.course.measures import Number, filled, measured, named_in
 from playground.course.model import Break, Compare, Lesson, Scene, Slider
-from playground.course.scenes import broken, with_value
+from playground.course.scenes import BOTH, broken, with_value
 from playground.course.talk.beats import (
-    BOTH,
     Beat,
     beats_of,
     cues_of,

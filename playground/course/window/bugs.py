@@ -30,8 +30,8 @@ from playground.studio.session import Session
 class Copy(OpenText):
     """A text that replaces a file; saving it draws it."""
 
-    apply: Callable[[str], None] = field(default=lambda text: None)
-    leave: Callable[[str], None] = field(default=lambda text: None)  # gets what was typed and not saved
+    keep: Callable[[str], None] = field(default=lambda text: None)  # what is saved, or typed at its end
+    draw: Callable[[], None] = field(default=lambda: None)
     note: str = ""  # shown when it is applied
     label: str = ""  # follows its name
 
@@ -60,7 +60,8 @@ class Copy(OpenText):
     def save(self, text: str, *, over: bool = False) -> bool:
         """Draw the text; the file stays as it is."""
         self.base = text
-        self.apply(text)
+        self.keep(text)
+        self.draw()
         return True
 
 
@@ -69,18 +70,31 @@ class Copies:
     """The copies that are open or replace their files, by the file."""
 
     files: OpenFiles
+    set_texts: Callable[[Mapping[str, str]], None]  # draws texts in place of files, by absolute path
+    label: Callable[..., str]  # of the interface, by key
     open: dict[Path, Copy] = field(default_factory=dict)
     _windows: dict[Path, Editing] = field(default_factory=dict)  # also of one whose window was closed
 
     def __post_init__(self) -> None:
         self.files.copy_of = self._windows.get
 
-    def edit(self, copy: Copy, line: int = 1) -> None:
-        """Open a copy in the window's own editor, in place of another of the same file."""
-        self.close(copy.path)
-        self.open[copy.path] = copy
-        editing = self._windows[copy.path] = Editing(copy)
+    @property
+    def texts(self) -> Mapping[str, str]:
+        """What replaces files, by absolute path."""
+        return {str(path): copy.base for path, copy in self.open.items()}
+
+    def draw(self) -> None:
+        """Draw the copies in place of their files."""
+        self.set_texts(self.texts)
+
+    def edit(self, path: Path, text: str, keep: Callable[[str], None], line: int = 1) -> Copy:
+        """Open a copy of a file in the window's own editor, in place of another of the same file."""
+        self.close(path)
+        note, label = self.label("applied"), self.label("copy")
+        copy = self.open[path] = Copy(path, text, keep=keep, draw=self.draw, note=note, label=label)
+        editing = self._windows[path] = Editing(copy)
         self.files.focus(editing, line)
+        return copy
 
     def focus(self, path: Path, line: int = 1) -> bool:
         """Bring the copy of a file to the front, opening its window again; return whether there is one."""
@@ -97,7 +111,7 @@ class Copies:
         for copy in gone:
             typed = typed_in(self._windows.pop(copy.path))
             if typed is not None:
-                copy.leave(typed)
+                copy.keep(typed)
             del self.open[copy.path]
 
     def text_of(self, path: Path) -> str | None:
@@ -136,11 +150,6 @@ class Bugs:
         self._to_check = False
 
     @property
-    def texts(self) -> Mapping[str, str]:
-        """What replaces files, by absolute path."""
-        return {str(path): copy.base for path, copy in self.copies.open.items()}
-
-    @property
     def waits(self) -> bool:
         """Whether a fix is still to be checked."""
         return self._to_check and not self.figure.busy
@@ -152,15 +161,14 @@ class Bugs:
         if block.scene is None:
             return
         self.leave()
-        path = file_of(block)
         try:
             text = self.typed.get(block.name) or with_bug(block)
         except PlaygroundError as error:
             self.notices.say(str(error))
             return
-        self._open(block, path, text, kernel_line(text))  # the bug itself is to be found
+        self._edit(block, text, kernel_line(text))  # the bug itself is to be found
         self._on, self.state[block.name] = block, BROKEN
-        self.figure.show(block.scene, (block.name, 1), self.texts)
+        self.figure.show(block.scene, (block.name, 1), self.copies.texts)
         self._to_check = text != with_bug(block)
 
     def focus(self, block: Break) -> None:
@@ -175,7 +183,7 @@ class Bugs:
         self.typed.pop(block.name, None)
         self._on, self._to_check = None, False
         self.state[block.name] = SHOWN
-        self.figure.show(block.scene, (block.name, 0), self.texts)
+        self.figure.show(block.scene, (block.name, 0), self.copies.texts)
 
     def check(self) -> bool:
         """Check whether the reader's own fix shows the whole picture; return whether there was one."""
@@ -222,8 +230,8 @@ class Bugs:
             line = self.excerpt(block).line
             if not self.copies.focus(path, line):
                 text = self.copies.text_of(path) or self.typed.get(block.name) or read_text(path)
-                self._open(block, path, text, line)
-                self._draw()
+                self._edit(block, text, line)
+                self.copies.draw()
         except PlaygroundError as error:
             self.notices.say(str(error))
             return
@@ -243,7 +251,7 @@ class Bugs:
         if self._on is not None and file_of(self._on) == file_of(block):
             self.typed.pop(self._on.name, None)
             self.leave()
-        self._draw()
+        self.copies.draw()
 
     # ── copies ───────────────────────────────────────────────────────────────
 
@@ -261,7 +269,7 @@ class Bugs:
         if self.copies.open:
             self.copies.close()
         if drawn and self.session.drafts.texts:
-            self._draw()
+            self.copies.draw()
 
     def forget(self) -> None:
         """Forget what was typed and fixed: another lesson is opened."""
@@ -269,22 +277,12 @@ class Bugs:
         self.state.clear()
         self.typed.clear()
 
-    def _open(self, block: Break | Code, path: Path, text: str, line: int) -> None:
-        def apply(new: str) -> None:
+    def _edit(self, block: Break | Code, text: str, line: int) -> None:
+        def keep(new: str) -> None:
             self.typed[block.name] = new
-            self._draw()
             self._to_check = self._on is not None
 
-        def leave(new: str) -> None:
-            self.typed[block.name] = new
-
-        copy = Copy(
-            path, text, apply=apply, leave=leave, note=self.label("applied"), label=self.label("copy")
-        )
-        self.copies.edit(copy, line)
-
-    def _draw(self) -> None:
-        self.figure.set_texts(self.texts)
+        self.copies.edit(file_of(block), text, keep, line)
 
 
 def file_of(block: Break | Code) -> Path:

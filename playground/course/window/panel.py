@@ -31,7 +31,7 @@ from playground.course.model import (
     Slider,
     Steps,
 )
-from playground.course.scenes import comparable
+from playground.course.scenes import BOTH, comparable
 from playground.course.tasks import (
     CheckResult,
     Picture,
@@ -48,7 +48,7 @@ from playground.course.window.figure_view import sketch_path
 from playground.course.window.page import Page, Textures, draw_picture
 from playground.course.window.page import Prose as Texts
 from playground.course.window.progress import MAX_WIDTH, MIN_WIDTH
-from playground.course.window.reader import BOTH, Reader
+from playground.course.window.reader import Reader
 from playground.course.window.tasks import Task
 from playground.errors import ParameterError, PlaygroundError
 from playground.memo import INTERFACE

@@ -28,7 +28,7 @@ from playground.course.model import (
     Steps,
     texts_of,
 )
-from playground.course.scenes import Sketches, comparable
+from playground.course.scenes import BOTH, Sketches, comparable
 from playground.course.tasks import answer_text, path_of
 from playground.course.window.bugs import Bugs, Copies
 from playground.course.window.figure_view import FigureView, steps_of
@@ -139,9 +139,6 @@ class Numbers:
 _STEP, _VALUE = 0.8, 0.5
 """[s] that a step, and a value of a sweep, is shown while it plays."""
 
-BOTH = -1
-"""The place of a comparison where two pictures are shown at once."""
-
 FigureBlock = Steps | Slider | Compare | Figure | Exercise | Challenge
 
 
@@ -165,7 +162,7 @@ class Reader:
         bench = self.bench
         self.figure = FigureView(bench.undo, bench.inspection.compare, self.begins)
         self.numbers = Numbers(bench.session)
-        copies = Copies(bench.files)
+        copies = Copies(bench.files, self.figure.set_texts, self.say)
         self.bugs = Bugs(
             session=bench.session,
             notices=bench.notices,
@@ -380,7 +377,7 @@ class Reader:
             self.playing = ""
         self.tasks.leave()
         self.bugs.leave()
-        self.figure.show(scene, (name, index), {**self.bugs.texts, **(texts or {})})
+        self.figure.show(scene, (name, index), {**self.bugs.copies.texts, **(texts or {})})
 
     def _clear(self) -> None:
         """Stop what plays and what is broken: a task's picture comes."""

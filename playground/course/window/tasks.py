@@ -185,7 +185,11 @@ class Tasks:
         texts: Mapping[str, str] = {}
         if block.file:
             path, text = path_of(block), attempt.text or starter_text(block)
-            self._open(block, path, text, kernel_line(text))
+
+            def keep(new: str) -> None:
+                self._keep(block, Work(new, attempt.values))
+
+            self._copy = self.copies.edit(path, text, keep, kernel_line(text))
             texts = {str(path): text}
         for slider, value in attempt.values.items():
             if slider in block.sliders:
@@ -350,19 +354,6 @@ class Tasks:
         """Forget what was said of a work that is no more."""
         self.judging.forget_work(block.name)
         self.remember()
-
-    def _open(self, block: Task, path: Path, text: str, line: int) -> None:
-        def apply(new: str) -> None:
-            self._keep(block, Work(new, self.attempt(block).values))
-            self.figure.set_texts({str(file): copy.base for file, copy in self.copies.open.items()})
-
-        def leave(new: str) -> None:
-            self._keep(block, Work(new, self.attempt(block).values))
-
-        copy = self._copy = Copy(
-            path, text, apply=apply, leave=leave, note=self.label("applied"), label=self.label("copy")
-        )
-        self.copies.edit(copy, line)
 
 
 def _own(block: Task, work: Work) -> tuple[str, dict[str, Value]]:
