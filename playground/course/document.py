@@ -62,7 +62,7 @@ def parser() -> MarkdownIt:
 def pieces(text: str) -> list[Piece]:
     """Split a text into its top-level parts, in order."""
     lines = text.split("\n")
-    indices = []
+    result = []
     for token in parser().parse(text):
         if token.level or token.map is None or token.type not in _KINDS:
             continue
@@ -71,8 +71,8 @@ def pieces(text: str) -> list[Piece]:
         level = int(token.tag[1]) if token.type == "heading_open" else 0
         fence = token.type == "fence"
         info, inside = (token.info.strip(), token.content) if fence else ("", "")
-        indices.append(Piece(_KINDS[token.type], written, start + 1, level, info, inside))
-    return indices
+        result.append(Piece(_KINDS[token.type], written, start + 1, level, info, inside))
+    return result
 
 
 def formulas(text: str) -> Iterator[str]:

@@ -61,13 +61,13 @@ def _steps(fence: Fence) -> model.Steps:
         repeated = [repeated_in(scene.sketch, path) for path in passes]
         most = min(repeats_of(scene.sketch, frame_size=scene.pixels, time=scene.time)[p] for p in repeated)
     iterations = fence.take("iterations", list, list(range(most + 1)))
-    if not iterations or not all(type(picture) is int and 0 <= picture <= most for picture in iterations):
+    if not iterations or not all(type(each) is int and 0 <= each <= most for each in iterations):
         message = f"iterations = {spell(iterations)}: expected whole numbers from 0 to {most}"
         raise fence.error(message, "iterations")
     captions = fence.texts("captions")
     if captions and len(captions) != len(iterations):
         raise fence.error(f"captions: {len(captions)} for {len(iterations)} iterations", "captions")
-    scenes = tuple(with_steps(scene, dict.fromkeys(passes, picture)) for picture in iterations)
+    scenes = tuple(with_steps(scene, dict.fromkeys(passes, iteration)) for iteration in iterations)
     return fence.block(model.Steps, scenes=scenes, passes=passes, iterations=tuple(iterations))
 
 

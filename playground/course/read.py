@@ -72,8 +72,7 @@ def translated(lesson: Lesson, english: Document, other: Document, language: str
         pairs, lost = _matched(then, hashes(english))
     else:
         pairs, lost = dict(enumerate(range(len(other.pieces)))), Stale()
-        if len(other.pieces) != len(lesson.blocks):
-            raise _other_shape(lesson, other)
+        _check_count(lesson.blocks, other)
     sketches = Sketches()
     changed = {index - 1 for index in lost.changed}
     blocks = []
@@ -111,8 +110,7 @@ def write_hashes(english: Document, other: Document) -> None:
 
     Raises ``SketchError`` where it has not as many blocks.
     """
-    if len(other.pieces) != len(english.pieces):
-        raise _other_shape(english, other)
+    _check_count(english.pieces, other)
     text = other.path.read_text(encoding="utf-8")
     rows = [f'    "{digest}",' for digest in hashes(english)]
     line = "\n".join(["source = [", *rows, "]"])
@@ -153,21 +151,27 @@ def _matched(then: Sequence[str], now: Sequence[str]) -> tuple[dict[int, int], S
 
 
 def _put(block: Block, piece: Piece, other: Document, sketches: Sketches) -> Block:
+    _check_kind(block, piece, other)
     if isinstance(block, Prose):
-        if block.kind != (prose_block := prose_of(piece)).kind or block.level != prose_block.level:
-            message = (
-                f"a {prose_block.kind} is here, where the English has a {block.kind} (line {block.line})"
-            )
-            raise SketchError(message, file=other.path, line=piece.line)
-        return replace(block, markdown=prose_block.markdown)
+        return replace(block, markdown=prose_of(piece).markdown)
     assert isinstance(block, Named)
-    kind = block.text.split(maxsplit=1)[0].lstrip("`~")
-    head = f"{kind} {block.name}"
-    if piece.kind != "fence" or piece.info != head:
-        found_head = piece.info if piece.kind == "fence" else f"a {piece.kind}"
-        message = f"expected the block '{head}' here, found {found_head}"
-        raise SketchError(message, file=other.path, line=piece.line)
     return replace(block, **_texts(block, open_fence(piece, other.path, piece.line, sketches)))
+
+
+def _check_kind(english: Block | Piece, piece: Piece, other: Document) -> None:
+    """Raise ``SketchError`` where a piece of a translation is another kind of block than the English one."""
+    if isinstance(english, Named) or (isinstance(english, Piece) and english.kind == "fence"):
+        head = " ".join(english.text.split("\n", 1)[0].lstrip("`~").split())
+        here = piece.info if piece.kind == "fence" else f"a {piece.kind}"
+        message = f"expected the block '{head}' here, found {here}" if here != head else ""
+    else:
+        mine, theirs = prose_of(piece), prose_of(english) if isinstance(english, Piece) else english
+        assert isinstance(theirs, Prose)
+        same = (mine.kind, mine.level) == (theirs.kind, theirs.level)
+        message = f"a {mine.kind} is here, where the English has a {theirs.kind} (line {english.line})"
+        message = "" if same else message
+    if message:
+        raise SketchError(message, file=other.path, line=piece.line)
 
 
 def _texts(block: Named, fence: Fence) -> dict[str, Any]:
@@ -191,28 +195,14 @@ def _texts(block: Named, fence: Fence) -> dict[str, Any]:
     return plan
 
 
-def _other_shape(english: Lesson | Document, other: Document) -> SketchError:
-    """Name the first block that is not what the English has in its place."""
-    theirs: tuple[Block | Piece, ...] = english.blocks if isinstance(english, Lesson) else english.pieces
-    for here, there in zip(other.pieces, theirs, strict=False):
-        kind = _kind(there)
-        if here.kind != kind or (here.kind == "fence" and here.info.split() != _head(there)):
-            message = f"a {here.kind} is here, where the English has a {kind} (line {there.line})"
-            return SketchError(message, file=other.path, line=here.line)
-    message = f"{len(other.pieces)} blocks, where the English has {len(theirs)}"
-    return SketchError(message, file=other.path, line=other.pieces[-1].line if other.pieces else 1)
-
-
-def _kind(block: Block | Piece) -> str:
-    if isinstance(block, Piece):
-        return block.kind
-    return block.kind if isinstance(block, Prose) and block.kind != "code" else "fence"
-
-
-def _head(block: Block | Piece) -> list[str]:
-    if isinstance(block, Piece):
-        return block.info.split()
-    return block.text.split("\n", 1)[0].lstrip("`~").split()
+def _check_count(english: Sequence[Block | Piece], other: Document) -> None:
+    """Raise ``SketchError`` at the first block that is another, where there are not as many as in English."""
+    if len(other.pieces) == len(english):
+        return
+    for piece, part in zip(other.pieces, english, strict=False):
+        _check_kind(part, piece, other)
+    message = f"{len(other.pieces)} blocks, where the English has {len(english)}"
+    raise SketchError(message, file=other.path, line=other.pieces[-1].line if other.pieces else 1)
 
 
 def _hash(text: str) -> str:

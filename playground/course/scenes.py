@@ -229,9 +229,9 @@ def _from_above(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, ske
     ref = table["view"]
     flat = flatten(sketch)
     with located(file, *key_path, "view"):
-        ref_found = flat.ref(ref, sketch.name)
+        texture = flat.ref(ref, sketch.name)
     kernels = {leaf.path: leaf.kernel for leaf in leaves_of(flat.nodes)}
-    output = next(o for o in kernels[ref_found.path].outputs if o.name == ref_found.output)
+    output = next(o for o in kernels[texture.path].outputs if o.name == texture.output)
     lowest, highest = _range(file, table, key_path)
     shown = _map(ref).with_value("lowest", lowest).with_value("highest", highest)
     return shown.with_value("channel", 0 if output.components > 2 else 1).of(sketch)

@@ -270,23 +270,23 @@ def _fitting(run: Run, extent: Extent, width: float, ruler: Ruler) -> list[tuple
 
 def _joined(line: list[Placed], ruler: Ruler) -> Line:
     """Return a line, neighbours in one style as one run."""
-    keys_by_action: list[Placed] = []
-    for positioned in line:
-        last = keys_by_action[-1] if keys_by_action else None
+    placed: list[Placed] = []
+    for each in line:
+        last = placed[-1] if placed else None
         if (
             last is not None
-            and not positioned.run.formula
-            and replace(last.run, text="") == replace(positioned.run, text="")
+            and not each.run.formula
+            and replace(last.run, text="") == replace(each.run, text="")
         ):
-            width = last.extent.width + positioned.extent.width
-            run = replace(last.run, text=last.run.text + positioned.run.text)
-            keys_by_action[-1] = Placed(run, last.x, replace(last.extent, width=width))
+            width = last.extent.width + each.extent.width
+            run = replace(last.run, text=last.run.text + each.run.text)
+            placed[-1] = Placed(run, last.x, replace(last.extent, width=width))
         else:
-            keys_by_action.append(positioned)
+            placed.append(each)
     plain = ruler(Run(""))
-    ascent = max([plain.ascent, *(p.extent.ascent for p in keys_by_action)])
-    descent = max([plain.descent, *(p.extent.descent for p in keys_by_action)])
-    return Line(tuple(keys_by_action), ascent, descent)
+    ascent = max([plain.ascent, *(p.extent.ascent for p in placed)])
+    descent = max([plain.descent, *(p.extent.descent for p in placed)])
+    return Line(tuple(placed), ascent, descent)
 
 
 @dataclass(frozen=True)

@@ -159,9 +159,9 @@ def fitted(words: Markdown, sizes: tuple[float, float], room: tuple[float, float
     step = max((largest - least) / 8, 0.25)
     size = largest
     while True:
-        texts = _laid(words, round(size, 2), room[0], ink)
-        if (texts.height <= room[1] and texts.width <= room[0] + 1) or size <= least:
-            return texts
+        laid = _laid(words, round(size, 2), room[0], ink)
+        if (laid.height <= room[1] and laid.width <= room[0] + 1) or size <= least:
+            return laid
         size = max(size - step, least)
 
 

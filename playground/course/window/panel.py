@@ -214,14 +214,14 @@ def draw_code_block(block: Code, page: Page) -> None:
     edited = bugs.is_edited(block)
     with page.frame(block.name, theme.WARM if edited else theme.LINE):
         try:
-            excerpt_found = bugs.excerpt(block)
+            quoted = bugs.excerpt(block)
         except PlaygroundError as error:
             page.text(str(error), dim=True)
         else:
             with page.look.font(page.look.text, theme.SMALL):
-                imgui.text_disabled(f"glsl/{block.file}:{excerpt_found.line}")
+                imgui.text_disabled(f"glsl/{block.file}:{quoted.line}")
             fence = "```"
-            page.prose.draw(f"{fence}\n{excerpt_found.text}\n{fence}", page.look, size=theme.SMALL + 1)
+            page.prose.draw(f"{fence}\n{quoted.text}\n{fence}", page.look, size=theme.SMALL + 1)
         if page.button(page.say("edit"), page.say("edit_note")):
             bugs.edit(block)
         if edited:
