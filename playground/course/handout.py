@@ -11,7 +11,6 @@ The same lessons give the same bytes, on the same renderer: names are sorted and
 
 from __future__ import annotations
 
-import io
 import json
 import re
 import tempfile
@@ -21,18 +20,24 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-from PIL import Image
-
 from playground._version import __version__
-from playground.course.book.html import prose
+from playground.course.book.html import open_command, prose
 from playground.course.document import plain
 from playground.course.glossary import linked_term
-from playground.course.library import SOURCE, Labels, labels
+from playground.course.library import Labels, labels
 from playground.course.measures import Number, filled, numbers_of
 from playground.course.model import Challenge, Exercise, Lesson, Scene, Task
 from playground.course.scenes import draw
-from playground.course.tasks import answer_text, path_of, scene_of, starter, starter_text, tasks_of
+from playground.course.tasks import (
+    answer_text,
+    path_of,
+    scene_of,
+    small,
+    starter,
+    starter_text,
+    tasks_of,
+    webp_of,
+)
 from playground.engine.engine import Engine
 from playground.errors import DataError, PlaygroundError, SketchError
 from playground.extras import DISTRIBUTION
@@ -309,7 +314,6 @@ def _includes_from_library(text: str, kernel: Path) -> str:
 
 
 _WIDTH = 480  # pixels of a picture
-_QUALITY = 80  # of WebP
 
 
 @dataclass(frozen=True)
@@ -336,12 +340,10 @@ class _PageContext:
 
     def picture(self, scene: Scene, alt: str, caption: str) -> Markup:
         """Draw a picture and return it as a figure that holds it."""
-        times = max(scene.pixels[0] / _WIDTH, 1.0)
-        width, height = (max(round(side / times), 16) for side in scene.pixels)
-        array = draw(self.engine, replace(scene, pixels=(width, height))).array
-        stream = io.BytesIO()
-        Image.fromarray(np.ascontiguousarray(array[..., :3])).save(stream, "WEBP", quality=_QUALITY, method=4)
-        image = tag("img", src=data_url("image/webp", stream.getvalue()), alt=alt, width=width, height=height)
+        shown = small(scene, _WIDTH)
+        source = data_url("image/webp", webp_of(draw(self.engine, shown).array))
+        width, height = shown.pixels
+        image = tag("img", src=source, alt=alt, width=width, height=height)
         return tag("figure", image, tag("figcaption", caption))
 
 
@@ -423,8 +425,7 @@ def _about(task: Task, assignment: Assignment | None, setting: _PageContext) -> 
         paths = joined(*(joined(Markup(" "), tag("code", path)) for path in task.sliders))
         lines.append(tag("p", label["values"], label["colon"], paths))
     if isinstance(task, Challenge):
-        language = "" if setting.lesson.language == SOURCE else f" --lang {setting.lesson.language}"
-        command = tag("code", f"playground lesson open {setting.lesson.name}{language}")
+        command = tag("code", open_command(setting.lesson))
         lines.append(tag("p", label["in_lesson"], label["colon"], command))
     return tag("div", *lines, class_="about")
 

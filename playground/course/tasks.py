@@ -7,6 +7,7 @@ sentence gives the answer away.
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -215,6 +216,15 @@ def difference_map(mine: Picture, expected: Picture) -> Picture:
     strong = np.clip(apart[where] * 2 + 80, 0, 255).astype(np.uint8)
     picture[where] = np.stack([np.full_like(strong, 255), 255 - strong, 255 - strong], axis=-1)
     return picture
+
+
+def webp_of(picture: NDArray[np.uint8]) -> bytes:
+    """Return a picture (h, w, 3 or 4) as WebP, without its alpha."""
+    from PIL import Image  # the window does without
+
+    stream = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(picture[..., :3])).save(stream, "WEBP", quality=80, method=4)
+    return stream.getvalue()
 
 
 def score(target: Picture, begin: Picture, mine: Picture) -> float:

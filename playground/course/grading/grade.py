@@ -7,16 +7,12 @@ again in a new process: what went wrong there may be what an earlier work has le
 
 from __future__ import annotations
 
-import io
 import math
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath, PureWindowsPath
 from typing import Any, TypeVar, cast
-
-import numpy as np
-from PIL import Image
 
 from playground.allowed_files import is_absolute, leads_outside
 from playground.course.grading.report import (
@@ -48,6 +44,7 @@ from playground.course.tasks import (
     sentences,
     small,
     wanted_scene,
+    webp_of,
 )
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine, open_engine
@@ -233,7 +230,6 @@ PREPARING, JUDGING = "preparing", "judging"
 """What the worker reports: it draws the model answer, or a student's work, whose time is limited."""
 
 _CACHE = 192 * 2**20  # [bytes] of textures
-_QUALITY = 82  # of WebP
 _MAX_LINE = 160  # characters of a line of a sentence
 _MAX_MESSAGES = 8  # a text may have thousands of mistakes
 _MAX_PAIRS = 4  # of pictures, for each exercise
@@ -312,7 +308,7 @@ def _pairs(engine: Engine, exercise: Exercise, work: Work, verdict: Verdict) -> 
 
 
 def _pair(mine: Picture, expected: Picture) -> Pair:
-    return Pair(_webp(mine), _webp(expected))
+    return Pair(webp_of(mine), webp_of(expected))
 
 
 def no_mark(task: Exercise | Challenge) -> Mark:
@@ -350,12 +346,6 @@ def _short(sentence: str) -> str:
     """Return a sentence, with the code that it may quote, without the rest of endless lines."""
     lines = [line if len(line) <= _MAX_LINE else f"{line[:_MAX_LINE]}…" for line in sentence.split("\n")]
     return "\n".join(line for line in lines[:3] if line.strip())
-
-
-def _webp(picture: Picture) -> bytes:
-    stream = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(picture[..., :3])).save(stream, "WEBP", quality=_QUALITY, method=2)
-    return stream.getvalue()
 
 
 def alike(texts: Mapping[str, str], handed_out: str) -> dict[str, tuple[str, ...]]:
