@@ -30,8 +30,19 @@ if TYPE_CHECKING:
     from playground.course.grading.submissions import Submission
     from playground.course.handout import Assignment
     from playground.course.model import Lesson
-    from playground.course.read import Summary
     from playground.engine.engine import Engine
+
+HELP = help_text(
+    "Lessons on terrain, to read next to the window, in a browser or as notebooks.",
+    "playground lesson list",
+    "playground lesson open diamond_square",
+    "playground lesson build -o book",
+    "playground lesson status",
+)
+app = command_group("lesson", HELP, "Lessons on terrain: read them, build them as a book or notebooks.")
+
+NameArgument = Annotated[str, positional("NAME", "A lesson.", complete_lesson)]
+NamesArgument = Annotated[list[str] | None, positional("NAME", "Lessons; all by default.", complete_lesson)]
 
 HANDOUT_HELP = help_text(
     "Write the exercises of lessons as a zip for students: a page without answers, and for each exercise"
@@ -47,6 +58,7 @@ HANDOUT_HELP = help_text(
 )
 
 
+@app.command("handout", help=HANDOUT_HELP)
 def handout(
     ctx: typer.Context,
     names: Annotated[list[str], positional("NAME", "The lessons.", complete_lesson)],
@@ -74,8 +86,10 @@ def handout(
         read_wheel(wheel)
     language = read_language(lang)
     lessons = [read_lesson(name, language) for name in dict.fromkeys(names)]
-    renderer: Renderer = ctx.obj.or_else(software)
-    with renderer.open_engine() as engine, progress("drawing", count_tasks(lessons)) as advance:
+    with (
+        ctx.obj.or_else(software).open_engine() as engine,
+        progress("drawing", count_tasks(lessons)) as advance,
+    ):
         written = write_handout(
             output, lessons, engine, hints=hints, install=install, wheel=wheel, advance=advance
         )
@@ -101,6 +115,7 @@ GRADE_HELP = help_text(
 )
 
 
+@app.command("grade", help=GRADE_HELP)
 def grade(
     ctx: typer.Context,
     folder: Annotated[Path, positional("FOLDER", "A folder or a zip for each student is in it.")],
@@ -212,9 +227,10 @@ FILM_SIZE = (1280, 720)
 """Pixels of a film, where none are given."""
 
 
+@app.command("present", help=PRESENT_HELP)
 def present(
     ctx: typer.Context,
-    name: Annotated[str, positional("NAME", "A lesson.", complete_lesson)],
+    name: NameArgument,
     lang: Language = "",
     beat: Annotated[int, value("--from BEAT", "The number of the beat to begin at.")] = 1,
     no_notes: Annotated[bool, flag("--no-notes", "Without the page of notes, or subtitles.")] = False,
@@ -234,7 +250,13 @@ def present(
         raise ParameterError(f"--from {beat}: lesson {name} has beats 1 to {count}")
     renderer = ctx.obj.or_else(software)
     if video:
-        _film(lesson, beat, video, size, renderer, subtitles=not no_notes)
+        from playground.course.talk.film import film_of, write_presentation
+
+        film = film_of(lesson, Path(video).expanduser(), size or FILM_SIZE, first=beat - 1)
+        film.check()
+        with renderer.open_engine() as engine, progress(f"filming {lesson.name}", len(film.beats)) as done:
+            paths = write_presentation(engine, film, subtitles=not no_notes, done=done, notice=note)
+        print(*paths, sep="\n")
         return
     check_display(renderer)
     from playground.course.talk.stage import Presenting
@@ -244,32 +266,6 @@ def present(
     open_window(lesson.sketch, size, renderer, request=request)
 
 
-def _film(
-    lesson: Lesson,
-    first: int,
-    video: str,
-    size: tuple[int, int] | None,
-    renderer: Renderer,
-    *,
-    subtitles: bool,
-) -> None:
-    """Write the film, and print the paths of what was written."""
-    from playground.course.talk.film import film_of, write_presentation
-
-    film = film_of(lesson, Path(video).expanduser(), size or FILM_SIZE, first=first - 1)
-    film.check()
-    with renderer.open_engine() as engine, progress(f"filming {lesson.name}", len(film.beats)) as done:
-        for path in write_presentation(engine, film, subtitles=subtitles, done=done, notice=note):
-            print(path)
-
-
-HELP = help_text(
-    "Lessons on terrain, to read next to the window, in a browser or as notebooks.",
-    "playground lesson list",
-    "playground lesson open diamond_square",
-    "playground lesson build -o book",
-    "playground lesson status",
-)
 LIST_HELP = help_text(
     "List the lessons, in their order, by the parts of the course.\n\n"
     "Shown are the minutes that reading a lesson takes, and those that its exercises take besides. In a pipe,"
@@ -321,15 +317,6 @@ BUILD_HELP = help_text(
     "playground lesson build --notebooks -o notebooks",
 )
 
-app = command_group("lesson", HELP, "Lessons on terrain: read them, build them as a book or notebooks.")
-
-app.command("handout", help=HANDOUT_HELP)(handout)
-app.command("grade", help=GRADE_HELP)(grade)
-app.command("present", help=PRESENT_HELP)(present)
-
-NameArgument = Annotated[str, positional("NAME", "A lesson.", complete_lesson)]
-NamesArgument = Annotated[list[str] | None, positional("NAME", "Lessons; all by default.", complete_lesson)]
-
 
 @app.command("list", help=LIST_HELP)
 def list_(lang: Language = "", as_json: options.Json = False) -> None:
@@ -341,7 +328,10 @@ def list_(lang: Language = "", as_json: options.Json = False) -> None:
         print_json([asdict(summary) for summary in result])
         return
     headings = ("", "lesson", "title", "reading", "exercises")
-    rows = [_row(summary) for summary in result]
+    rows = [
+        (str(each.number), each.name, each.title, f"{each.minutes} min", f"{each.exercise_minutes} min")
+        for each in result
+    ]
     if not sys.stdout.isatty():
         print_rows([(*row, summary.part) for row, summary in zip(rows, result, strict=True)])
         return
@@ -349,16 +339,6 @@ def list_(lang: Language = "", as_json: options.Json = False) -> None:
         print_table(
             part, headings, [row for row, summary in zip(rows, result, strict=True) if summary.part == part]
         )
-
-
-def _row(summary: Summary) -> tuple[str, ...]:
-    return (
-        str(summary.number),
-        summary.name,
-        summary.title,
-        f"{summary.minutes} min",
-        f"{summary.exercise_minutes} min",
-    )
 
 
 @app.command("open", help=OPEN_HELP)
@@ -416,7 +396,7 @@ def check(ctx: typer.Context, names: NamesArgument = None, software: options.Sof
 
     chosen = _chosen(names)
     wrong, sketches = 0, Sketches()
-    with _engine(ctx, software) as engine, progress("checking", len(chosen)) as advance:
+    with ctx.obj.or_else(software).open_engine() as engine, progress("checking", len(chosen)) as advance:
         for name in chosen:
             for language in LANGUAGES:
                 try:
@@ -452,7 +432,7 @@ def pictures(
 
     result = pictures_of(read_lesson(name))
     output.mkdir(parents=True, exist_ok=True)
-    with _engine(ctx, software) as engine, progress("drawing", len(result)) as advance:
+    with ctx.obj.or_else(software).open_engine() as engine, progress("drawing", len(result)) as advance:
         for picture in result:
             path = output / f"{name}-{picture.name}.png"
             write_png(path, draw(engine, picture.scene).array)
@@ -490,11 +470,11 @@ def build(
     chosen = _chosen(names)
     lessons = {code: [lesson for lesson in read_lessons(code) if lesson.name in chosen] for code in languages}
     if notebooks:
-        with _engine(ctx, software) as engine:
+        with ctx.obj.or_else(software).open_engine() as engine:
             _write_notebooks(output, lessons, engine)
         return
     made = prepare(output, lessons, gallery=not names, answers=answers)
-    with _engine(ctx, software) as engine, progress("drawing", len(made.names)) as advance:
+    with ctx.obj.or_else(software).open_engine() as engine, progress("drawing", len(made.names)) as advance:
         front = write_book(made, engine, advance)
     print(front)
 
@@ -539,11 +519,6 @@ def _chosen(names: list[str] | None) -> list[str]:
     for name in names or []:
         lesson_file(name)  # raises with the list of lessons
     return names or [summary.name for summary in summaries(SOURCE)]
-
-
-def _engine(ctx: typer.Context, software: bool) -> Engine:
-    renderer: Renderer = ctx.obj.or_else(software)
-    return renderer.open_engine()
 
 
 def add_to(line: typer.Typer) -> None:
