@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -127,13 +128,24 @@ def open_service(parent: Parent, options: tuple[bool, int | None]) -> Service:
         parent.report(step.path)
 
     def answer(request: Request) -> Verdict | Match | Ends:
-        if request.work is None:
-            assert isinstance(request.task, Challenge)
-            return judge.ends(request.task, request.side)
-        return judge.judge(request.task, request.work, request.side)
+        with surviving(engine):
+            if request.work is None:
+                assert isinstance(request.task, Challenge)
+                return judge.ends(request.task, request.side)
+            return judge.judge(request.task, request.work, request.side)
 
     engine.runner.before_step = begin
     return Service(answer)
+
+
+@contextmanager
+def surviving(engine: Engine) -> Iterator[None]:
+    """Raise ``SandboxCrash`` where what is drawn inside costs the process its context."""
+    try:
+        yield
+    finally:
+        if is_lost(engine.ctx):
+            raise SandboxCrash("made the driver reset itself")
 
 
 class Judge:
@@ -145,14 +157,10 @@ class Judge:
         self._ends: dict[object, Ends] = {}
 
     def judge(self, task: Exercise | Challenge, work: Work, side: int = SIDE) -> Verdict | Match:
-        """Judge a work; raise ``SandboxCrash`` where it has cost the process its context."""
-        try:
-            if isinstance(task, Challenge):
-                return match(self.engine, task, work, self.ends(task, side), side)
-            return judge(self.engine, task, work, self.answers(task))
-        finally:
-            if is_lost(self.engine.ctx):
-                raise SandboxCrash("made the driver reset itself")
+        """Judge a work; raise as ``judge`` and ``match``."""
+        if isinstance(task, Challenge):
+            return match(self.engine, task, work, self.ends(task, side), side)
+        return judge(self.engine, task, work, self.answers(task))
 
     def answers(self, task: Exercise) -> tuple[Wanted, ...]:
         """Return what the model answer gives for each check."""

@@ -11,6 +11,7 @@ import math
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import PurePosixPath, PureWindowsPath
 from typing import Any, TypeVar, cast
 
@@ -27,7 +28,7 @@ from playground.course.grading.report import (
 )
 from playground.course.grading.submissions import HandedIn, Submission, printable, read_submission
 from playground.course.handout import Assignment, assignments_of, normalised
-from playground.course.judging import LIMIT_BYTES, Judge, cause_of
+from playground.course.judging import LIMIT_BYTES, Judge, cause_of, surviving
 from playground.course.library import Said, in_language, labels
 from playground.course.model import Challenge, Exercise
 from playground.course.read import read_lesson
@@ -268,12 +269,13 @@ def open_service(parent: Parent, options: Options) -> Service:
         if request.text is None:
             return _judged_mark(judge, options.language, task, request.exercise, answer(task))
         parent.report(JUDGING)
-        try:
-            work = _work_of(task, request.text)
-            return _judged_mark(judge, options.language, task, request.exercise, work)
-        except (ContextError, DataError) as error:  # or a texture larger than there is room for
-            said = (_short(in_language(error.diagnostics[0].message, options.language)),)
-            return replace(no_mark(task), outcome=REFUSED, sentences=said)
+        with surviving(engine):
+            try:
+                work = _work_of(task, request.text)
+                return _judged_mark(judge, options.language, task, request.exercise, work)
+            except (ContextError, DataError) as error:  # or a texture larger than there is room for
+                said = (_short(in_language(error.diagnostics[0].message, options.language)),)
+                return replace(no_mark(task), outcome=REFUSED, sentences=said)
 
     return Service(answer_request, engine.info)
 
@@ -285,7 +287,8 @@ def _judged_mark(judge: Judge, language: str, task: Exercise | Challenge, name: 
     path_text, own = shown(path_of(task)) if task.file else "", f"{name}.glsl"
 
     def said(texts: Iterable[str]) -> tuple[str, ...]:
-        return tuple(_short(s.replace(path_text, own) if path_text else s) for s in texts)[:_MAX_MESSAGES]
+        first = islice(texts, _MAX_MESSAGES)
+        return tuple(_short(s.replace(path_text, own) if path_text else s) for s in first)
 
     if isinstance(result, Match):
         texts = [*map(str, result.diagnostics)] or [score_of(result, language)]
