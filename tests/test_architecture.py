@@ -324,14 +324,6 @@ def test_one_module_chooses_what_a_software_renderer_gains_by():
     assert naming == ["engine/renderer.py"]
 
 
-def test_a_module_introduces_itself():
-    wrong = []
-    for path in modules():
-        if not ast.get_docstring(tree_of(path)):
-            wrong.append(f"{path.relative_to(ROOT)} has no docstring")
-    assert not wrong, "\n".join(wrong)
-
-
 def test_a_module_is_named_by_what_it_does():
     """These words say nothing to who has not read the file."""
     paths = {p.relative_to(PACKAGE).as_posix() for p in modules() if p.stem in UNCLEAR}
@@ -390,52 +382,6 @@ def test_nothing_must_be_edited_in_two_places():
     assert not wrong, "\n".join(wrong)
 
 
-def undocumented(body: list[ast.stmt], prefix: str) -> Iterator[str]:
-    for node in body:
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-            if node.name.startswith("_"):
-                continue
-            if not ast.get_docstring(node):
-                yield f"{prefix}{node.name}"
-            if isinstance(node, ast.ClassDef):
-                yield from undocumented(node.body, f"{prefix}{node.name}.")
-
-
-def test_what_is_public_is_documented():
-    missing = []
-    for path in modules():
-        missing += [f"{path.relative_to(ROOT)}: {name}" for name in undocumented(tree_of(path).body, "")]
-    assert not missing, "\n".join(missing)
-
-
-@pytest.mark.slow
-def test_only_the_command_prints():
-    """A function that prints and returns cannot be used by another program."""
-    wrong = []
-    for path in modules():
-        if layer_of(path) in ("cli", "commands", "terminal", "__main__") or path.stem == "commands":
-            continue
-        for node in ast.walk(tree_of(path)):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print":
-                wrong.append(f"{path.relative_to(ROOT)}:{node.lineno}")
-    assert not wrong, f"print in {', '.join(wrong)}"
-
-
-@pytest.mark.slow
-def test_nothing_is_evaluated():
-    """A sketch is data: no way leads from its text to Python's own evaluation."""
-    wrong = []
-    for path in modules():
-        for node in ast.walk(tree_of(path)):
-            if (
-                isinstance(node, ast.Call)
-                and isinstance(node.func, ast.Name)
-                and node.func.id in ("eval", "exec")
-            ):
-                wrong.append(f"{path.relative_to(ROOT)}:{node.lineno}")
-    assert not wrong, f"eval or exec in {', '.join(wrong)}"
-
-
 def test_a_test_has_a_name_of_at_most_60_letters():
     wrong = [
         f"{path.relative_to(ROOT)}: {node.name}"
@@ -456,9 +402,6 @@ def test_the_checks_above_can_fail():
     assert [name for _, name in imported(tree, path)] == ["playground.engine", "playground.studio.app"]
     relative = ast.parse("from ..engine import plan\nfrom . import model\n")
     assert [name for _, name in imported(relative, path)] == ["playground.engine", "playground.sketch"]
-    assert list(
-        undocumented(ast.parse("def f(): pass\nclass A:\n    'x'\n    def g(self): pass\n").body, "")
-    ) == ["f", "A.g"]
     a, b, c = PACKAGE / "a.py", PACKAGE / "b.py", PACKAGE / "c.py"
     late = ast.parse("if TYPE_CHECKING:\n    from playground import b\ndef f():\n    from .c import x\n")
     assert files_named(late, a, {"playground.b": b, "playground.c": c}) == {b, c}
