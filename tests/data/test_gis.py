@@ -533,7 +533,7 @@ def flt(path):
     return path
 
 
-def test_a_grid_of_text_has_its_cells_and_their_system_next_to_it(tmp_path):
+def test_a_grid_of_text_has_its_cells_and_their_system(tmp_path):
     path = asc(tmp_path / "a.asc", "xllcenter 1000\nyllcenter 2000\ndx 10\ndy 20")
     elevation = read_elevation(path)
     np.testing.assert_array_equal(elevation.heights[::-1], GRID)
