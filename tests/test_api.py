@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import textwrap
 from pathlib import Path
 
@@ -155,12 +154,6 @@ def test_non_repeating_pass_is_refused_listing_repeated_ones(engine, sketch):
             list(engine.steps(sketch, path))
     with pytest.raises(playground.SketchError, match=r"did you mean 'height\.raw'"):
         engine.render(sketch, steps={"height.rwa": 1})
-
-
-@pytest.mark.parametrize("function", [playground.headless, playground.render, playground.parameters])
-def test_a_docstring_names_every_parameter(function):
-    documentation = inspect.getdoc(function)
-    assert not [name for name in inspect.signature(function).parameters if f"``{name}``" not in documentation]
 
 
 def test_the_package_s_own_example_runs(tmp_path, monkeypatch):
