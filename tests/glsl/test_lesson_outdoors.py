@@ -8,6 +8,7 @@ import pytest
 from playground.paths import SKETCHES
 
 from ..loading import load
+from ..truth.surfaces import reflected
 
 RADIUS, TOP, EYE = 6360.0, 100.0, 0.001
 WAVES = np.array([0.627, 0.539, 0.440])
@@ -129,13 +130,6 @@ def test_the_beam_is_that_of_beer_and_lambert(engine, shown):
     np.testing.assert_allclose(here[sure], expected[sure], atol=2 * bound)
 
 
-def fresnel(cosine):
-    inside = np.sqrt(1 - (1 - cosine**2) / 1.333**2)
-    across = (cosine - 1.333 * inside) / (cosine + 1.333 * inside)
-    along = (1.333 * cosine - inside) / (1.333 * cosine + inside)
-    return 0.5 * (across**2 + along**2)
-
-
 def test_calm_water_mirrors_by_fresnel(engine, shown):
     mirrored = engine.read(shown("water_view", water__down=30.0), "water:mirrored").astype(float)
     ny, nx = mirrored.shape
@@ -143,7 +137,7 @@ def test_calm_water_mirrors_by_fresnel(engine, shown):
     y = (np.arange(ny) + 0.5 - ny / 2) / ny
     sinks = np.radians(30)
     z = (y * np.cos(sinks) - np.sin(sinks))[:, None] / np.sqrt(1 + x[None] ** 2 + y[:, None] ** 2)
-    np.testing.assert_allclose(mirrored, fresnel(-z), atol=2e-6)
+    np.testing.assert_allclose(mirrored, reflected(-z), atol=2e-6)
 
 
 @pytest.mark.parametrize("wind", [2.0, 8.0])

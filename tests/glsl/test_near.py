@@ -10,6 +10,7 @@ import pytest
 from playground.sketch.model import Camera
 
 from ..truth.noise import lattice_seed, perlin, solid
+from ..truth.surfaces import reflected
 
 RNG = np.random.default_rng(18)
 RUNGS, COARSEST = 13, 64.0
@@ -225,15 +226,6 @@ def test_axis_aligned_normal_takes_one_triplanar_plane(on_gpu):
 
 
 # ── wet ground, snow ─────────────────────────────────────────────────────────
-
-
-def reflected(cosine, before, after):
-    """Return what an even surface throws back of light that is not polarised (Fresnel)."""
-    sine = before / after * np.sqrt(1 - cosine**2)
-    inner = np.sqrt(np.maximum(1 - sine**2, 0))
-    across = ((before * cosine - after * inner) / (before * cosine + after * inner)) ** 2
-    along = ((before * inner - after * cosine) / (before * inner + after * cosine)) ** 2
-    return np.where(sine >= 1, 1.0, (across + along) / 2)
 
 
 def test_wet_ground_gives_back_what_its_film_lets_out(on_gpu):

@@ -6,19 +6,10 @@ import numpy as np
 import pytest
 
 from ..sketch_texts import passes
+from ..truth.surfaces import reflected
 
 INDEX = 1.333
 DISSOLVED = np.array([0.95, 1.0, 1.35])
-
-
-def fresnel(cosine):
-    """Return the mean of both polarisations' reflectance, by angles."""
-    into = np.arccos(np.clip(cosine, -1.0, 1.0))
-    below = np.arcsin(np.sin(into) / INDEX)
-    across = np.sin(into - below) / np.maximum(np.sin(into + below), 1e-12)
-    along = np.tan(into - below) / np.tan(into + below)
-    head_on = ((INDEX - 1) / (INDEX + 1)) ** 2
-    return np.where(into < 1e-6, head_on, 0.5 * (across**2 + along**2))
 
 
 def towards(azimuth, elevation):
@@ -35,14 +26,14 @@ def towards(azimuth, elevation):
 def test_water_mirrors_the_mean_of_both_polarisations(on_gpu):
     cosine = np.linspace(0.001, 0.9999, 400)
     result = on_gpu("water/fresnel.glsl", "fresnel_of_water(c)", c=cosine.astype(np.float32))
-    np.testing.assert_allclose(result, fresnel(cosine), rtol=2e-4, atol=1e-6)
+    np.testing.assert_allclose(result, reflected(cosine), rtol=2e-4, atol=1e-6)
     assert on_gpu("water/fresnel.glsl", "fresnel_of_water(c)", c=np.float32([0.0]))[0] == 1.0
 
 
 def test_schlick_is_off_by_up_to_six_percent_of_the_light(on_gpu):
     """As the lesson on water says, and `water/fresnel.glsl`: the most, at 84°, and too bright there."""
     cosine = np.linspace(0.001, 0.9999, 2001)
-    off = 0.02 + 0.98 * (1.0 - cosine) ** 5 - fresnel(cosine)
+    off = 0.02 + 0.98 * (1.0 - cosine) ** 5 - reflected(cosine)
     worst = np.argmax(np.abs(off))
     assert off[worst] == pytest.approx(0.059, abs=5e-4)
     assert np.degrees(np.arccos(cosine[worst])) == pytest.approx(84.0, abs=0.5)
@@ -53,7 +44,7 @@ def test_schlick_is_off_by_up_to_six_percent_of_the_light(on_gpu):
 
 def test_what_it_mirrors_of_an_even_sky_is_the_integral(on_gpu):
     cosine = (np.arange(100_000) + 0.5) / 100_000
-    whole = np.mean(2 * cosine * fresnel(cosine))
+    whole = np.mean(2 * cosine * reflected(cosine))
     assert on_gpu("water/fresnel.glsl", "DIFFUSE_MIRRORED")[0] == pytest.approx(whole, abs=2e-4)
 
 
@@ -155,7 +146,7 @@ def mirrored_by_slopes(to_eye, slope, variance, steps=801):
     area = np.maximum(to_eye[2] - x * to_eye[0] - y * to_eye[1], 0.0)
     facing = area / np.sqrt(1 + x**2 + y**2)
     weight /= weight.sum()
-    return (weight * area * fresnel(facing)).sum() / (weight * area).sum(), (weight * area).sum()
+    return (weight * area * reflected(facing)).sum() / (weight * area).sum(), (weight * area).sum()
 
 
 @pytest.mark.slow
@@ -193,7 +184,7 @@ def test_calm_water_is_a_mirror(on_gpu):
     share = on_gpu(
         "water/rough_mirror.glsl", "mirrors_of(v, vec2(0.0), 0.0).mirrored", v=to_eye.astype(np.float32)
     )
-    np.testing.assert_allclose(share, fresnel(np.sin(np.radians(17.0))), rtol=1e-3)
+    np.testing.assert_allclose(share, reflected(np.sin(np.radians(17.0))), rtol=1e-3)
 
 
 @pytest.mark.parametrize(("elevation", "variance"), [(60.0, 0.02), (35.0, 0.01), (25.0, 0.005)])
@@ -255,7 +246,7 @@ def test_red_goes_first_and_no_more_goes_in_than_falls_on_it(on_gpu):
     assert np.all(kept[2:, 0] < kept[2:, 1]) and np.all(np.diff(kept, axis=0) >= 0)
     rise = np.linspace(0.01, 0.999, 30).astype(np.float32)
     down = on_gpu("water/body.glsl", "light_down(vec3(1.0), vec3(0.0), s).r", s=rise)
-    np.testing.assert_allclose(down, 1 - fresnel(rise), atol=1e-4)
+    np.testing.assert_allclose(down, 1 - reflected(rise), atol=1e-4)
 
 
 # ── foam ─────────────────────────────────────────────────────────────────────────
