@@ -7,13 +7,13 @@ import pytest
 
 from playground.sketch.model import Camera
 
-from ..sketch_texts import passes
+from ..sketch_texts import passes, use
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 MASK = '#pragma kernel(output = "mask:rgba32f")\nvec4 kernel(ivec2 texel) {{ return {}; }}\n'
-TERRAIN = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
-RULE = TERRAIN + '[[pass]]\nname = "cover"\nuse = "texturing/alpha_map/rule"\nset = {{ {} }}\n'
-PATH = '[[pass]]\nname = "cover"\nuse = "texturing/alpha_map/path"\nset = {{ {} }}\n'
+TERRAIN = passes(height="./terrain")
+RULE = TERRAIN + passes(cover=("texturing/alpha_map/rule", "set = {{ {} }}"))
+PATH = passes(cover=("texturing/alpha_map/path", "set = {{ {} }}"))
 
 
 @pytest.fixture
@@ -158,15 +158,18 @@ def test_a_path_may_wander_but_not_away(any_engine, make_sketch):
 
 # ── the map ──────────────────────────────────────────────────────────────────
 
-STACK = passes(
-    rock="./one",
-    snow="./two",
-    path=("./three", "{}[[pass]]", 'name = "weights"', 'use = "texturing/alpha_map/stack"', "{}"),
-)
+STACK = passes(rock="./one", snow="./two", path="./three")
+WEIGHTS = "texturing/alpha_map/stack"
 COVERS = {
     name: '#include "noise/hash.glsl"\n' + MASK.format(f"vec4(random(texel, {n}u))")
     for n, name in enumerate(("one", "two", "three"))
 }
+
+
+def painted(size=None, **values):
+    """Return the stack with a brush over it."""
+    weights = use(WEIGHTS, inputs={"painted": "brush"}, **values)
+    return STACK + passes(brush=use("./brush", size=size), weights=weights)
 
 
 def bytes_of(any_engine, sketch):
@@ -176,7 +179,7 @@ def bytes_of(any_engine, sketch):
 
 
 def test_in_every_texel_the_weights_sum_to_one_exactly(engine, make_sketch):
-    sketch = make_sketch(STACK.format("", ""), size=[97, 61], **COVERS)
+    sketch = make_sketch(STACK + passes(weights=WEIGHTS), size=[97, 61], **COVERS)
     result = bytes_of(engine, sketch)
     assert (result.sum(axis=-1) == 255).all()
     covers = np.stack([engine.read(sketch, name)[..., 0] for name in ("rock", "snow", "path")], -1).astype(
@@ -189,8 +192,7 @@ def test_in_every_texel_the_weights_sum_to_one_exactly(engine, make_sketch):
 
 
 def test_the_whole_map_sums_to_one_on_terrain(any_engine, make_sketch):
-    text = '[[pass]]\nname = "height"\nuse = "generation/diamond_square"\n'
-    text += '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map"\n'
+    text = passes(height="generation/diamond_square", weights="texturing/alpha_map")
     result = bytes_of(any_engine, make_sketch(text, size=129, extent=2000.0, relief=900.0))
     assert (result.sum(axis=-1) == 255).all()
     assert (result.reshape(-1, 4).max(axis=0) > 100).all(), "each layer is somewhere"
@@ -198,22 +200,16 @@ def test_the_whole_map_sums_to_one_on_terrain(any_engine, make_sketch):
 
 @pytest.mark.parametrize("layers", [1, 2, 3])
 def test_fewer_layers_leave_the_others_out(any_engine, make_sketch, layers):
-    text = f'set = {{ layers = {layers} }}\ninputs = {{ painted = "brush" }}'
-    brush = '[[pass]]\nname = "brush"\nuse = "./brush"\n'
-    result = bytes_of(
-        any_engine, make_sketch(STACK.format(brush, text), size=17, brush=MASK.format("vec4(0.2)"), **COVERS)
-    )
+    text = painted(layers=layers)
+    result = bytes_of(any_engine, make_sketch(text, size=17, brush=MASK.format("vec4(0.2)"), **COVERS))
     assert (result[..., layers:] == 0).all()
     assert (result.sum(axis=-1) == 255).all()
 
 
 def test_full_strength_paint_overrides_and_none_changes_nothing(any_engine, make_sketch):
-    plain = bytes_of(any_engine, make_sketch(STACK.format("", ""), size=33, **COVERS))
-    brush = '[[pass]]\nname = "brush"\nuse = "./brush"\nsize = 33\n'
+    plain = bytes_of(any_engine, make_sketch(STACK + passes(weights=WEIGHTS), size=33, **COVERS))
     half = "texel.x < 11 ? vec4(0.0) : texel.x < 22 ? vec4(0.0, 0.0, 0.5, 0.0) : vec4(0.0, 0.0, 1.0, 1.0)"
-    sketch = make_sketch(
-        STACK.format(brush, 'inputs = { painted = "brush" }'), size=33, brush=MASK.format(half), **COVERS
-    )
+    sketch = make_sketch(painted(), size=33, brush=MASK.format(half), **COVERS)
     result = bytes_of(any_engine, sketch)
     np.testing.assert_array_equal(result[:, :11], plain[:, :11])
     np.testing.assert_allclose(
@@ -225,18 +221,14 @@ def test_full_strength_paint_overrides_and_none_changes_nothing(any_engine, make
 def test_a_mask_may_be_finer_or_coarser_than_the_map(any_engine, make_sketch):
     slope = MASK.format("vec4(size.x - 1 - texel.x, texel.x, 0.0, 0.0) / float(size.x - 1)")
     for size in (9, 129):
-        brush = f'[[pass]]\nname = "brush"\nuse = "./brush"\nsize = {size}\n'
-        sketch = make_sketch(
-            STACK.format(brush, 'inputs = { painted = "brush" }'), size=33, brush=slope, **COVERS
-        )
+        sketch = make_sketch(painted(size), size=33, brush=slope, **COVERS)
         result = bytes_of(any_engine, sketch)
         np.testing.assert_allclose(result[5, :, 1], np.linspace(0, 255, 33), atol=0.6)
 
 
 def test_another_layer_can_stand_in_by_name(any_engine, make_sketch):
-    text = TERRAIN + '[[pass]]\nname = "marsh"\nuse = "./marsh"\n'
-    text += '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map"\nset = { path = 0 }\n'
-    text += 'inputs = { "weights.rock" = "marsh" }\n'
+    weights = use("texturing/alpha_map", inputs={"weights.rock": "marsh"}, path=0)
+    text = TERRAIN + passes(marsh="./marsh", weights=weights)
     sketch = make_sketch(
         text, terrain=HEIGHT.format("0.2"), marsh=MASK.format("vec4(float(texel.y > 8))"), size=17
     )
@@ -249,7 +241,7 @@ def test_more_than_four_layers_are_refused_in_one_sentence(make_sketch):
 
     with pytest.raises(PlaygroundError) as caught:
         make_sketch(
-            TERRAIN + '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map"\nset = { layers = 5 }\n',
+            TERRAIN + passes(weights=use("texturing/alpha_map", layers=5)),
             terrain=HEIGHT.format("0.0"),
         )
     assert "layers" in str(caught.value) and "1" in str(caught.value) and "4" in str(caught.value)
@@ -260,11 +252,9 @@ def test_more_than_four_layers_are_refused_in_one_sentence(make_sketch):
 
 
 def test_far_away_one_layer_gives_way_to_another(any_engine, make_sketch):
-    text = TERRAIN + '[[pass]]\nname = "plain"\nuse = "./plain"\n'
-    text += (
-        '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map/distance"\ninputs = { weights = "plain" }\n'
-    )
-    text += 'set = { near = "rock", far = "snow", begins = 700, ends = 1100 }\n'
+    ways = {"near": "rock", "far": "snow", "begins": 700, "ends": 1100}
+    weights = use("texturing/alpha_map/distance", inputs={"weights": "plain"}, **ways)
+    text = TERRAIN + passes(plain="./plain", weights=weights)
     hill = "0.3 + 0.002 * float(texel.x)"
     sketch = make_sketch(
         text, size=[41, 21], extent=[1000.0, 500.0], relief=300.0,
@@ -283,10 +273,8 @@ def test_far_away_one_layer_gives_way_to_another(any_engine, make_sketch):
 
 
 def test_a_moved_camera_runs_the_distance_and_not_the_rules(any_engine, make_sketch):
-    text = TERRAIN + '[[pass]]\nname = "rules"\nuse = "texturing/alpha_map"\n'
-    text += (
-        '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map/distance"\ninputs = { weights = "rules" }\n'
-    )
+    weights = use("texturing/alpha_map/distance", inputs={"weights": "rules"})
+    text = TERRAIN + passes(rules="texturing/alpha_map", weights=weights)
     sketch = make_sketch(text, terrain=HEIGHT.format("0.5"))
     any_engine.read(sketch, "weights")
     any_engine.read(sketch.with_camera(Camera(azimuth=100)), "weights")
