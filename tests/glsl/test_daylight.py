@@ -10,7 +10,7 @@ from playground.sketch.model import Camera, kernels_of
 from playground.sketch.wiring import input_names
 
 from ..loading import library
-from ..sketch_texts import toml_value
+from ..sketch_texts import passes, use, view
 from ..truth.eyes import rays
 from ..truth.land import towards
 
@@ -23,13 +23,9 @@ HEIGHTS += (-18.0, -30.0, -90.0)
 def day(make_sketch):
     """Give a sketch of daylight alone: the sun free and the eye not adapted, unless given."""
 
-    def make(passes="", files=None, **value):
+    def make(rest="", files=None, **value):
         values = {"position": "free", "adaptation": 0.0, **value}
-        text = ", ".join(f"{k} = {toml_value(v)}" for k, v in values.items())
-        return make_sketch(
-            f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {text} }}\n{passes}',
-            **(files or {}),
-        )
+        return make_sketch(passes(daylight=use("lighting/daylight", **values)) + rest, **(files or {}))
 
     return make
 
@@ -65,15 +61,18 @@ def test_the_sun_follows_place_date_and_hour(any_engine, day, on_gpu):
     np.testing.assert_array_equal(place(position="free", sun=[12.0, -3.0]), [12.0, -3.0])
 
 
+def still(hour, day):
+    return passes(daylight=use("lighting/daylight", hour=hour, day=day))
+
+
 def test_with_a_clock_the_sun_moves_and_without_one_nothing_runs(any_engine, make_sketch):
-    still = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ hour = {}, day = {} }}\n'
-    clock = '[[pass]]\nname = "clock"\nuse = "lighting/daylight_clock"\nset = { pace = 0.5 }\nsize = 1\n'
-    moving = make_sketch(clock + still.format(22.0, 100))
+    clock = passes(clock=use("lighting/daylight_clock", size=1, pace=0.5))
+    moving = make_sketch(clock + still(22.0, 100))
     for time, hour, date in ((0.0, 22.0, 100), (2.0, 23.0, 100), (12.0, 4.0, 101), (100.0, 0.0, 103)):
         result = any_engine.read(moving, "daylight.place", time=time)
-        expected = any_engine.read(make_sketch(still.format(hour, date)), "daylight.place")
+        expected = any_engine.read(make_sketch(still(hour, date)), "daylight.place")
         np.testing.assert_allclose(result, expected, atol=1e-3)
-    sketch = make_sketch(still.format(9.0, 100))
+    sketch = make_sketch(still(9.0, 100))
     any_engine.read(sketch, "daylight", time=0.0)
     any_engine.read(sketch, "daylight", time=5.0)
     assert any_engine.record.ran == []
@@ -231,7 +230,7 @@ vec4 kernel(ivec2 texel) {
 
 
 def test_unwired_it_is_the_parameters_and_wired_it_is_daylight(engine, make_sketch, day, on_gpu):
-    taken = '[[pass]]\nname = "taken"\nuse = "./take"\nsize = [5, 1]\n'
+    taken = passes(taken=use("./take", size=[5, 1]))
     plain = engine.read(make_sketch(taken, take=TAKE), "taken")[0]
     here = on_gpu("lighting/sun.glsl", "to_sun(vec2(200.0, 33.0))")[0]
     np.testing.assert_allclose(plain[0, :3], here, atol=1e-6)
@@ -239,7 +238,7 @@ def test_unwired_it_is_the_parameters_and_wired_it_is_daylight(engine, make_sket
     assert plain[0, 3] == 0
     np.testing.assert_array_equal(plain[1:4, :3], [[200, 33, 0], [0.5, 0.25, 0.125], [0.0625, 0.125, 0.75]])
     # A pass of that name, or an output of it, is taken without being wired.
-    text = '[[pass]]\nname = "hours"\nuse = "lighting/daylight"\nset = { position = "free", sun = [70, 5] }\n'
+    text = passes(hours=use("lighting/daylight", position="free", sun=[70, 5]))
     sketch = make_sketch(text + taken, take=TAKE)
     result, row = engine.read(sketch, "taken")[0], engine.read(sketch, "hours")[0]
     np.testing.assert_array_equal(result[0, :3], row[0, :3])
@@ -263,7 +262,7 @@ vec4 kernel(ivec2 texel) {
 
 def test_daylight_says_how_hazy_and_how_cloudy_it_is(engine, day):
     """Turbidity and cover, set once, are read by all that draws air or clouds, which get its tables too."""
-    message = '[[pass]]\nname = "told"\nuse = "./say"\nsize = [3, 1]\n'
+    message = passes(told=use("./say", size=[3, 1]))
     sketch = day(message, {"say": SAY}, turbidity=3.5, clouds=0.25, adaptation=0.5, ground=0.4)
     result, row = engine.read(sketch, "told")[0].astype(np.float64), row_of(engine, sketch)
     np.testing.assert_allclose(result[0, :3], [3.5, 0.75, row[3, 3]], rtol=1e-6)
@@ -306,10 +305,8 @@ def takers():
 @pytest.mark.parametrize("name", takers())
 @pytest.mark.parametrize("elevation", [35.0, 6.0])
 def test_a_light_technique_takes_the_sun_and_the_sky_from_it(any_engine, make_sketch, name, elevation):
-    light = f'[[pass]]\nname = "light"\nuse = "{name}"\nset = {{ ambient = 1.0 }}\n'
-    terrain = '[[pass]]\nname = "height"\nuse = "./hills"\n'
-    text = f'set = {{ position = "free", sun = [250.0, {elevation}] }}\n'
-    day = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\n{text}'
+    light, terrain = passes(light=use(name, ambient=1.0)), passes(height="./hills")
+    day = passes(daylight=use("lighting/daylight", position="free", sun=[250.0, elevation]))
     wired = make_sketch(terrain + day + light, relief=200.0, hills=HILLS)
     row = row_of(any_engine, wired)
     result = any_engine.read(wired, "light")
@@ -335,17 +332,15 @@ def test_turbidity_is_set_once():
 # ── seen behind the terrain ─────────────────────────────────────────────────────
 
 FLAT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
-TERRAIN = '[[pass]]\nname = "height"\nuse = "./flat"\n'
+TERRAIN = passes(height="./flat")
 SEEN = (160, 120)
 
 
 @pytest.fixture
 def outdoors(make_sketch):
-    def make(sun=(180.0, 10.0), view='sky = "daylight"', daylight=True):
-        text = f'position = "free", sun = [{sun[0]}, {sun[1]}], turbidity = 2.0'
-        light = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {text} }}\n'
-        shown = f'[view]\nuse = "view/terrain"\nsamples = 1\nset = {{ {view} }}\n' if view else ""
-        shown = shown or '[view]\nuse = "view/terrain"\nsamples = 1\n'
+    def make(sun=(180.0, 10.0), sky="daylight", daylight=True):
+        light = passes(daylight=use("lighting/daylight", position="free", sun=sun, turbidity=2.0))
+        shown = view("view/terrain", **({"sky": sky} if sky else {}))
         return make_sketch(TERRAIN + (light if daylight else "") + shown, flat=FLAT)
 
     return make
@@ -368,8 +363,8 @@ def test_the_colours_stay_what_they_were(any_engine, outdoors):
         frames = [
             any_engine.read(looking(sketch, azimuth, elevation), "view.sky", size=SEEN)
             for sketch in (
-                outdoors(view="", daylight=False),
-                outdoors(view=""),
+                outdoors(sky="", daylight=False),
+                outdoors(sky=""),
                 outdoors(daylight=False),  # nothing to take it from
             )
         ]
@@ -438,11 +433,10 @@ def test_a_camera_that_moves_lights_nothing_anew(any_engine, outdoors):
 @pytest.mark.parametrize("columns", [1, 2, 3, 5, 16])
 def test_a_dome_of_any_width_has_the_same_bits_by_its_halves(any_engine, make_sketch, columns):
     """Of an odd number, the middle column is in the right half, whose last two columns have one place."""
-    text = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = { hour = 8.3 }\n'
-    text += f'[[pass]]\nname = "dome"\nuse = "lighting/daylight/dome"\nsize = [{columns}, 27]\n'
-    text += 'inputs = { place = "daylight.place:place", columns = "daylight:columns", '
-    text += 'bounced = "daylight:bounced", air = "daylight.air:air" }\n'
-    sketch = make_sketch(text)
+    wires = {"place": "daylight.place:place", "columns": "daylight:columns"}
+    wires |= {"bounced": "daylight:bounced", "air": "daylight.air:air"}
+    dome = use("lighting/daylight/dome", size=[columns, 27], inputs=wires)
+    sketch = make_sketch(passes(daylight=use("lighting/daylight", hour=8.3), dome=dome))
     result = any_engine.read(sketch, "dome")
     assert "dome.fast.dome" in any_engine.record.ran
     np.testing.assert_array_equal(result, any_engine.read(sketch.plainly(), "dome"))

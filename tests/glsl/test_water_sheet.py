@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ..sketch_texts import passes, use
+
 BOWL = """
 #include "maths/land.glsl"
 #pragma kernel(output = "height:r32f")
@@ -55,9 +57,14 @@ float kernel(ivec2 texel) {
 EXTENT = (1000.0, 800.0)
 
 
-def sketch_of(make_sketch, terrain, passes, size, **files):
-    text = f'[[pass]]\nname = "height"\nuse = "./terrain"\n{passes}'
-    text += '[[pass]]\nname = "over"\nuse = "./read"\nsize = [801, 641]\ninputs = { water = "water" }\n'
+WIDE = {"river": "river:river", "width": "river:width"}
+
+
+def sketch_of(make_sketch, terrain, size, water="water/sheet", **files):
+    """Return a sketch of passes by files' names, the water made of them, and what is read of it."""
+    made = {name: f"./{name}" for name in files}
+    over = use("./read", size=[801, 641], inputs={"water": "water"})
+    text = passes(height="./terrain", **made, water=water, over=over)
     return make_sketch(text, size=size, extent=list(EXTENT), terrain=terrain, read=READ, **files)
 
 
@@ -67,8 +74,7 @@ def places():
 
 
 def test_the_sea_is_level_everywhere(any_engine, make_sketch):
-    text = '[[pass]]\nname = "water"\nuse = "water/sea"\nsize = 1\nset = { sea_level = 37.5 }\n'
-    sketch = sketch_of(make_sketch, BOWL, text, [41, 33])
+    sketch = sketch_of(make_sketch, BOWL, [41, 33], use("water/sea", size=1, sea_level=37.5))
     np.testing.assert_array_equal(any_engine.read(sketch, "water")[0, 0], [37.5, 0, 0, -1])
     east, north = places()
     depth = any_engine.read(sketch, "over").astype(float)
@@ -80,8 +86,7 @@ def test_the_sea_is_level_everywhere(any_engine, make_sketch):
 @pytest.mark.parametrize("size", [[41, 33], [83, 71]])
 def test_a_lake_ends_where_its_depth_does(any_engine, make_sketch, size):
     """The shore is a circle of 200 m: between texels, and not at them."""
-    text = '[[pass]]\nname = "depth"\nuse = "./lake"\n[[pass]]\nname = "water"\nuse = "water/sheet"\n'
-    sketch = sketch_of(make_sketch, BOWL, text, size, lake=LAKE)
+    sketch = sketch_of(make_sketch, BOWL, size, depth=LAKE)
     wet = any_engine.read(sketch, "over") > 0
     east, north = places()
     away = np.hypot(east - 480, north - 310)
@@ -99,13 +104,9 @@ def test_a_lake_ends_where_its_depth_does(any_engine, make_sketch, size):
 def test_a_river_elsewhere_floods_no_shore(any_engine, make_sketch):
     """A river that is wired and nowhere changes nothing."""
     nowhere = '#pragma kernel(output = "river:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
-    text = '[[pass]]\nname = "depth"\nuse = "./lake"\n{}[[pass]]\nname = "water"\nuse = "water/sheet"\n'
-    river = '[[pass]]\nname = "river"\nuse = "./nowhere"\n'
     with_river, without = (
-        any_engine.read(
-            sketch_of(make_sketch, BOWL, text.format(river), [41, 33], lake=LAKE, nowhere=nowhere), "over"
-        )
-        for river in (river, "")
+        any_engine.read(sketch_of(make_sketch, BOWL, [41, 33], depth=LAKE, **river), "over")
+        for river in ({"river": nowhere}, {})
     )
     np.testing.assert_array_equal(with_river, without)
 
@@ -113,16 +114,13 @@ def test_a_river_elsewhere_floods_no_shore(any_engine, make_sketch):
 def test_a_lake_does_not_go_on_over_its_outlet(any_engine, make_sketch):
     """On a slope that falls to the east, dry ground that lies lower stays dry."""
     lake = '#pragma kernel(output = "depth:r32f")\nfloat kernel(ivec2 t) { return t.x < 20 ? 5.0 : 0.0; }\n'
-    text = '[[pass]]\nname = "depth"\nuse = "./lake"\n[[pass]]\nname = "water"\nuse = "water/sheet"\n'
-    wet = any_engine.read(sketch_of(make_sketch, SLANT, text, [41, 33], lake=lake), "over") > 0
+    wet = any_engine.read(sketch_of(make_sketch, SLANT, [41, 33], depth=lake), "over") > 0
     east, _ = places()
     assert wet[east < 474].all() and not wet[east > 501].any()
 
 
 def test_a_river_is_as_wide_as_it_is_and_runs_downhill(any_engine, make_sketch):
-    text = '[[pass]]\nname = "river"\nuse = "./strip"\n[[pass]]\nname = "water"\nuse = "water/sheet"\n'
-    text += 'inputs = { river = "river:river", width = "river:width" }\n'
-    sketch = sketch_of(make_sketch, SLANT, text, [101, 81], strip=STRIP)
+    sketch = sketch_of(make_sketch, SLANT, [101, 81], use("water/sheet", inputs=WIDE), river=STRIP)
     wet = any_engine.read(sketch, "over") > 0
     _, north = places()
     assert wet[abs(north - 400) < 28.5].all() and not wet[abs(north - 400) > 31.5].any()
@@ -137,10 +135,8 @@ def test_a_river_is_as_wide_as_it_is_and_runs_downhill(any_engine, make_sketch):
 @pytest.mark.parametrize("sea", ["false", "true"])
 def test_a_river_one_texel_wide_keeps_its_width_high_above_a_sea(any_engine, make_sketch, sea):
     """Between 1.59 m of water and 0.3 m of dry ground 25 m away; ground beyond is far from water."""
-    text = '[[pass]]\nname = "river"\nuse = "./thin"\n[[pass]]\nname = "water"\nuse = "water/sheet"\n'
-    text += 'inputs = { river = "river:river", width = "river:width" }\n'
-    text += f"set = {{ sea = {sea}, sea_level = 1.0 }}\n"
-    over = any_engine.read(sketch_of(make_sketch, SLANT, text, [41, 33], thin=THIN), "over")
+    water = use("water/sheet", inputs=WIDE, sea=sea, sea_level=1.0)
+    over = any_engine.read(sketch_of(make_sketch, SLANT, [41, 33], water, river=THIN), "over")
     _, north = places()
     deep = 0.06 * 60**0.8
     width = (over > 0).sum(axis=0) * EXTENT[1] / 640
@@ -149,8 +145,7 @@ def test_a_river_one_texel_wide_keeps_its_width_high_above_a_sea(any_engine, mak
 
 
 def test_the_sea_meets_a_river(any_engine, make_sketch):
-    text = '[[pass]]\nname = "river"\nuse = "./strip"\n[[pass]]\nname = "water"\nuse = "water/sheet"\n'
-    text += 'inputs = { river = "river:river" }\nset = { sea = true, sea_level = 22.0 }\n'
-    water = any_engine.read(sketch_of(make_sketch, SLANT, text, [101, 81], strip=STRIP), "water")
+    water = use("water/sheet", inputs={"river": "river:river"}, sea=True, sea_level=22.0)
+    water = any_engine.read(sketch_of(make_sketch, SLANT, [101, 81], water, river=STRIP), "water")
     assert np.all(water[40, 75:, 3] == -1) and np.all(water[40, 75:, 0] == 22.0)
     assert np.all(water[40, :60, 3] >= 0) and np.all(water[5, :, 3] == -1)
