@@ -35,7 +35,7 @@ CORE_TESTS = (
     "data/test_files.py",
 )
 ROOM_TESTS = {
-    "studio": ("test_escape_layers.py", "test_keys.py"),  # a panel of a window, without a screen
+    "studio": ("test_input.py",),  # a panel of a window, without a screen
     "publish": ("capture/test_mesh.py",),
     "verify": ("shots/test_judge.py",),
 }

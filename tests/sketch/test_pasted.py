@@ -1,14 +1,133 @@
-"""A shader's text becomes a new file: its name, its ending, and what is refused."""
+"""A shader's text becomes a new file, and opens in the window."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from imgui_bundle import imgui
 
+from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 from playground.sketch.pasted import keep_text
+from playground.studio.edits.autosave import Autosave, memory_of
+
+from .panel_desk import Bare
+
+TERRAIN = """// terrain.glsl -- hills
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(0, 1) How high
+float kernel(ivec2 texel) { return level; }
+"""
+SKETCH = (
+    'format = 1\nsize = 9\n[[pass]]\nname = "height"\nuse = "./terrain"\n'
+    '[view]\nuse = "view/map"\ninputs = { shown = "height" }\n'
+)
+SHADER = "// Half red\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(0.5, 0.0, 0.0, 1.0); }\n"
+BROKEN = "void mainImage(out vec4 c, in vec2 p) { c = vec4(not_declared); }\n"
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": SKETCH}
+
+
+@pytest.fixture
+def pasting(bare: Bare, folder: Path) -> Iterator[Bare]:
+    """Give the panel with a memory of each sketch, as the window has it."""
+    memory = memory_of(folder / "sketch.toml", folder / "state")
+    autosave = Autosave(bare.session, memory, now=lambda: bare.time)
+    bare.bench.commands.opens = autosave.open  # type: ignore[assignment]
+    bare.autosave = autosave  # type: ignore[attr-defined]
+    bare.run_frames(2)
+    autosave.look((900, 600))
+    imgui.get_platform_io().platform_get_clipboard_text_fn = lambda _: bare.clipboard
+    yield bare
+    autosave.close()
+
+
+def paste(bare: Bare, text: str) -> None:
+    bare.clipboard = text
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.v)
+    bare.run_frames(3)
+    bare.autosave.look((900, 600))  # type: ignore[attr-defined]
+
+
+def said(bare: Bare) -> str:
+    return "\n".join(notice.text for notice in bare.bench.notices.items)
+
+
+def level(bare: Bare) -> object:
+    assert bare.session.sketch is not None
+    return dict(bare.session.sketch.overrides).get("height.level")
+
+
+@pytest.mark.room("dialects")
+def test_a_text_on_the_clipboard_opens_as_a_new_file(pasting: Bare, folder: Path) -> None:
+    paste(pasting, SHADER)
+    assert pasting.session.path == folder / "half_red.frag" and pasting.session.error is None
+    assert (folder / "half_red.frag").read_text("utf-8") == SHADER
+    assert pasting.session.read() is not None
+    frame = pasting.session.read()
+    assert frame is not None and tuple(frame.array[0, 0][:3]) == (128, 0, 0)
+    assert f"pasted as half_red.frag in {folder}" in said(pasting)
+
+
+@pytest.mark.room("dialects")
+def test_the_sketch_before_comes_back_with_its_edits(pasting: Bare, folder: Path) -> None:
+    pasting.session.drafts.set("height.level", 0.25)
+    pasting.run_frames(2)
+    paste(pasting, SHADER)
+    assert level(pasting) is None
+    pasting.key(imgui.Key.backspace)
+    pasting.run_frames(3)
+    assert pasting.session.path == folder / "sketch.toml" and level(pasting) == 0.25
+    pasting.autosave.look((900, 600))  # type: ignore[attr-defined]
+    pasting.key(imgui.Key.backspace)
+    assert "no other sketch was opened before this one" in said(pasting)
+    assert pasting.session.path == folder / "sketch.toml"
+    pasting.key(imgui.Key.mod_shift, imgui.Key.backspace)
+    pasting.run_frames(3)
+    assert pasting.session.path == folder / "half_red.frag"
+
+
+@pytest.mark.room("dialects")
+def test_a_text_with_a_mistake_is_kept_and_the_picture_stays(pasting: Bare, folder: Path) -> None:
+    paste(pasting, BROKEN)
+    assert "not_declared" in str(pasting.session.error)
+    assert pasting.session.shown is not None and pasting.session.drafts.shown_path.name == "sketch.toml"
+    assert (folder / "pasted_1.frag").read_text("utf-8") == BROKEN
+    pasting.key(imgui.Key.backspace)
+    pasting.run_frames(3)
+    assert pasting.session.error is None and pasting.session.path == folder / "sketch.toml"
+
+
+@pytest.mark.parametrize("text", ["", "just some words", "float twice(float x) { return 2.0 * x; }"])
+def test_a_text_with_nothing_to_run_opens_nothing(pasting: Bare, folder: Path, text: str) -> None:
+    files = sorted(folder.iterdir())
+    paste(pasting, text)
+    assert pasting.session.path == folder / "sketch.toml" and sorted(folder.iterdir()) == files
+    assert len(pasting.bench.notices.items) == 1 and "the clipboard: " in said(pasting)
+
+
+def test_a_text_pasted_into_a_field_stays_there(pasting: Bare, folder: Path) -> None:
+    pasting.key(imgui.Key.slash)
+    pasting.bench.interface.search()
+    pasting.run_frames(3)
+    assert imgui.get_io().want_text_input
+    paste(pasting, SHADER)
+    assert pasting.session.path == folder / "sketch.toml"
+    assert not (folder / "half_red.frag").exists()
+
+
+@pytest.mark.room("dialects")
+def test_the_same_text_twice_is_one_file(any_engine: Engine, pasting: Bare, folder: Path) -> None:
+    paste(pasting, SHADER)
+    paste(pasting, SHADER)
+    assert sorted(path.name for path in folder.glob("*.frag")) == ["half_red.frag"]
+    assert pasting.session.path == folder / "half_red.frag" and pasting.session.error is None
+
+
+# ── pasted ────────────────────────────────────────────────────────────────────
+
 
 SHADERTOY = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0.0, 1.0); }\n"
 MAIN = "void main() { gl_FragColor = vec4(1.0); }\n"

@@ -4,7 +4,7 @@
 //   needs    nothing
 //   units    none
 //   source   derived here
-//   tested   tests/studio/test_sculpted_sketch.py, against NumPy
+//   tested   tests/studio/test_sculpting.py, against NumPy
 #pragma kernel(output = "factor:r32f")
 
 uniform sampler2D painted;       //! input

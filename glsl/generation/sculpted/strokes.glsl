@@ -4,7 +4,7 @@
 //   needs    nothing; the processor reads the file (playground/engine/file_sources.py)
 //   units    the file's numbers as they are, of either sign
 //   source   derived here
-//   tested   tests/studio/test_sculpted_sketch.py, against the file's own numbers
+//   tested   tests/studio/test_sculpting.py, against the file's own numbers
 //
 // The file's first row is north. It may have any size and is resampled, corners on corners. In
 // the window B takes the brush; the sketch's own file is never written to.

@@ -4,7 +4,7 @@
 //   needs    nothing; both inputs have the size of this pass
 //   units    height in units of relief, the change in metres
 //   source   derived here
-//   tested   tests/studio/test_sculpted_sketch.py, against NumPy
+//   tested   tests/studio/test_sculpting.py, against NumPy
 #pragma kernel(output = "height:r32f")
 
 uniform sampler2D height;        //! input

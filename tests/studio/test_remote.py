@@ -1,13 +1,17 @@
-"""The remote by HTTP and WebSocket: who may ask, what is answered, and that nothing is lost in a flood."""
+"""Remotes by HTTP and WebSocket: who may ask, what is answered, and that nothing is lost in a flood."""
 
 from __future__ import annotations
 
 import asyncio
 import io
+import itertools
 import json
+import random
 import re
 import socket
-from collections.abc import Callable
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
 from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
@@ -18,14 +22,24 @@ import pytest
 from PIL import Image
 
 from playground import cli
-from playground.errors import ContextError, DataError, ParameterError
+from playground.engine.engine import Engine
+from playground.errors import ContextError, DataError, ParameterError, PlaygroundError
 from playground.extras import install_command
 from playground.local_server import MAX_UNAUTHENTICATED
 from playground.studio.remote.controls import MAX_WAITING, Busy, Calls
+from playground.shader.parameter import coerce, part_names
+from playground.shader.widgets import Widget
+from playground.sketch.assign import range_of
+from playground.sketch.model import Parameter, Value
+from playground.studio.remote.addresses import Addresses
+from playground.studio.remote.controller_file import read_bindings
+from playground.studio.remote.controls import Behind, Controls
 from playground.studio.remote.remotes import RemoteOptions, Remotes
+from playground.studio.remote.shares import check_shares, share_of, with_share
 
 from ..crowds import crowd, wait_until_open
-from .remote_desk import KERNEL, SIZE, TOKEN, Harness
+from ..docs.pages import DOCS, Block, blocks_of
+from .remote_desk import KERNEL, SIZE, TOKEN, Harness, write_sketch
 
 
 def fetched(url: str, body: Any = None, **headers: str) -> tuple[int, bytes]:
@@ -562,3 +576,269 @@ def test_bytes_that_are_no_http_and_bugs_print_nothing(
     status, text = remote.during(lambda: fetched(f"{url}state"))
     assert status == 500 and "ZeroDivisionError" in json.loads(text)["error"]
     assert capfd.readouterr() == ("", "") and caplog.records == []
+
+
+# ── controls hostile ──────────────────────────────────────────────────────────
+
+
+PATHS = [
+    "height.level",
+    "height.sun",
+    "height.kind",
+    "height.rocks",
+    "height.tint",
+    "height.grass",
+    "height.fire",
+]
+PATHS += [
+    "relief",
+    "extent",
+    "height",
+    "",
+    ".",
+    "height.",
+    "..",
+    "height.level.x",
+    "no.such",
+    "view.lowest",
+    "x" * 999,
+]
+
+
+@pytest.fixture
+def harness(tmp_path: Path, any_engine: Engine) -> Iterator[Harness]:
+    made = Harness(any_engine, write_sketch(tmp_path / "hills"))
+    yield made
+    made.close()
+
+
+def anything(chance: random.Random, depth: int = 0) -> Any:
+    """Return a value as JSON may hold one."""
+    simple = [
+        None,
+        True,
+        False,
+        0,
+        1,
+        -1,
+        10**30,
+        0.5,
+        1e308,
+        float("inf"),
+        "",
+        "0.5",
+        "flat",
+        "#12",
+        "1,2",
+        "\0",
+        "😀",
+    ]
+    if depth > 2 or chance.random() < 0.6:
+        return chance.choice(simple)
+    if chance.random() < 0.5:
+        return [anything(chance, depth + 1) for _ in range(chance.randrange(5))]
+    return {chance.choice([*PATHS, "azimuth", "elevation"]): anything(chance, depth + 1) for _ in range(3)}
+
+
+@pytest.mark.always
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_asked_by_chance_ends_in_a_sentence_at_worst(harness: Harness, seed: int):
+    chance, controls = random.Random(seed), Controls(harness.bench)
+    addresses = Addresses(controls)
+    refused = 0
+    for _ in range(400):
+        name = chance.choice([*controls.names, "set", "set", "st"])
+        value = anything(chance)
+        if name == "set" and chance.random() < 0.8:
+            value = {chance.choice(PATHS): anything(chance) for _ in range(chance.randrange(3))}
+        try:
+            controls.do({name: value})
+        except PlaygroundError as error:
+            refused += 1
+            assert "\n" not in str(error) and len(str(error)) < 2000
+        arguments = [anything(chance) for _ in range(chance.randrange(4))]
+        words = chance.choice([*PATHS, "playground.time", "playground.preset", "playground.x"])
+        addresses.receive("/" + words.replace(".", "/"), arguments)
+    controls.reset("height.grass")  # it may name a file that is not there, as in the panel
+    harness.frame()
+    assert refused > 50 and harness.session.error is None and controls.parameters()
+
+
+@pytest.mark.parametrize(
+    ("source", "what"),
+    [("", "computes frame 5 of 36,001"), ("height", "makes height, 5 of 36,001")],
+)
+def test_a_picture_that_is_not_there_yet_is_said_once(harness: Harness, source: str, what: str):
+    harness.frame()
+    harness.session.catch_up.behind, harness.session.catch_up.source = (5, 36_001), source
+    with pytest.raises(Behind) as met:
+        Controls(harness.bench).picture()
+    assert str(met.value) == f"there is no picture yet: the window {what}"
+
+
+# ── shares ────────────────────────────────────────────────────────────────────
+
+
+SLIDER = Widget("slider", -2.0, 6.0)
+ALL: list[tuple[Parameter, Value]] = [
+    (Parameter("a", "float", 0.0, SLIDER), 1.0),
+    (Parameter("a", "float", 0.0, SLIDER, step=0.5), 1.0),
+    (Parameter("a", "float", 1.0, Widget("log_slider", 0.01, 100.0)), 1.0),
+    (Parameter("a", "int", 0, Widget("slider", -3, 12)), 1),
+    (Parameter("a", "uint", 0, Widget("slider", 0, 9999)), 1),
+    (Parameter("a", "ivec2", (0, 0), Widget("slider", 0, 8)), (1, 2)),
+    (Parameter("a", "vec3", (0.0,) * 3, SLIDER), (0.0, 1.0, 2.0)),
+    (Parameter("a", "vec2", (0.0, 0.0), Widget("direction")), (135.0, 25.0)),
+    (Parameter("a", "vec4", (0.0,) * 4, Widget("colour")), (0.5, 0.25, 0.125, 1.0)),
+    (Parameter("a", "vec2", (0.0, 0.0), Widget("point", 0.0, 1.0)), (0.5, 0.5)),
+    (Parameter("a", "vec2", (0.0, 2.0), Widget("point", axes=((-1.0, 1.0), (2.0, 9.0)))), (0.0, 3.0)),
+    (Parameter("a", "vec3", (0.0,) * 3, Widget("colour", raw=True)), (0.5, 0.25, 0.125)),
+    (Parameter("a", "float", 0.0, Widget("angle", -360.0, 360.0)), 0.0),
+    (Parameter("a", "int", 0, Widget("menu", choices=("x", "y", "z"))), 1),
+    (Parameter("a", "bool", False, Widget("checkbox")), False),
+]
+
+
+@pytest.mark.parametrize(("parameter", "value"), ALL, ids=lambda item: getattr(item, "type", ""))
+def test_every_fraction_gives_valid_value_at_its_position(parameter: Parameter, value: Value):
+    choices = len(parameter.widget.choices) or (2 if parameter.type == "bool" else 0)
+    for part, step in itertools.product(range(len(part_names(parameter)) or 1), range(0, 128, 7)):
+        share = step / 127
+        made = with_share(parameter, value, share, part)
+        assert coerce(parameter, made) == made
+        assert type(made) is type(value) or parameter.type == "bool"
+        back = share_of(parameter, made, part)
+        ends = range_of(parameter, part) or (0.0, 1.0)
+        whole = parameter.type.startswith(("i", "u"))
+        grain = 1.0 if whole else parameter.step or 0.0
+        allowed = 0.5 / choices + 1e-9 if choices else 0.5 * grain / (ends[1] - ends[0]) + 1e-4
+        if parameter.type == "bool":
+            allowed = 0.5
+        assert abs(back - share) <= allowed, (share, made, back)
+        if isinstance(value, tuple) and isinstance(made, tuple):
+            assert [n for at, n in enumerate(made) if at != part] == [
+                n for at, n in enumerate(value) if at != part
+            ]
+
+
+def test_the_ends_are_those_of_the_range():
+    for parameter, value in ALL:
+        if parameter.widget.kind in ("slider", "log_slider", "angle", "point"):
+            low, high = range_of(parameter) or (0, 0)
+            for share, end in ((0.0, low), (1.0, high), (-1.0, low), (2.0, high)):
+                made = with_share(parameter, value, share)
+                assert (made[0] if isinstance(made, tuple) else made) == end
+
+
+def test_steps_are_counted_from_the_lower_end():
+    parameter = Parameter("a", "float", 0.0, Widget("slider", 0.25, 1.25), step=0.5)
+    assert {with_share(parameter, 0.25, n / 127) for n in range(128)} == {0.25, 0.75, 1.25}
+
+
+def test_what_has_no_range_is_refused_in_a_sentence():
+    check_shares(ALL[0][0], "a")
+    for parameter, why in (
+        (Parameter("a", "float", 0.0), "no range"),
+        (Parameter("a", "sampler2D", "", Widget("file")), "names a file"),
+    ):
+        with pytest.raises(ParameterError, match=why):
+            check_shares(parameter, "height.a")
+
+
+# ── how to ────────────────────────────────────────────────────────────────────
+
+
+PAGE = DOCS / "how-to" / "remotes.md"
+SKETCH = """format = 1
+size = 17
+[[pass]]
+name = "height"
+use = "generation/white_noise"
+[[pass]]
+name = "light"
+use = "lighting/l_dot_n"
+[view]
+use = "view/terrain"
+set = { grid = 9 }
+[[preset]]
+name = "evening"
+set = { "light.sun" = [250.0, 12.0] }
+"""
+
+
+@pytest.fixture
+def how_to_harness(tmp_path: Path, any_engine: Engine) -> object:
+    (tmp_path / "land").mkdir()
+    (tmp_path / "land" / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    made = Harness(any_engine, tmp_path / "land")
+    yield made
+    made.close()
+
+
+def block(language: str, holds: str) -> Block:
+    (result,) = [b for b in blocks_of(PAGE) if b.language == language and holds in b.text]
+    return result
+
+
+def runs(how_to_harness: Harness, text: str, folder: Path, *words: str) -> str:
+    command = [sys.executable, "-W", "error", "-c", text, *words]
+
+    def run() -> subprocess.CompletedProcess[str]:
+        return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60)
+
+    done = how_to_harness.during(run)
+    assert done.returncode == 0, done.stderr
+    return str(done.stdout)
+
+
+def test_the_script_by_http(how_to_harness: Harness, tmp_path: Path) -> None:
+    server = how_to_harness.open(port=0).server
+    assert server is not None
+    printed = runs(how_to_harness, block("python", "urlopen").text, tmp_path, server.url)
+    assert how_to_harness.value("light.sun") == (250.0, 12.0) and "light.sun 250,12" in printed
+    with Image.open(tmp_path / "evening.png") as picture:
+        assert picture.size == (640, 360)
+
+
+def test_the_script_by_websocket(how_to_harness: Harness, tmp_path: Path) -> None:
+    server = how_to_harness.open(port=0).server
+    assert server is not None
+    before = how_to_harness.value("light.sun")
+    printed = runs(how_to_harness, block("python", "aiohttp").text, tmp_path, server.url)
+    events = [json.loads(line) for line in printed.splitlines()]
+    assert events[0]["event"] == "state" and events[-1] == {"ok": True, "id": "done"}
+    assert how_to_harness.value("light.sun") == before, "the stream of values is one step, undone at the end"
+
+
+def test_the_script_by_osc(how_to_harness: Harness, tmp_path: Path) -> None:
+    osc = how_to_harness.open(osc=("127.0.0.1", 0)).osc
+    assert osc is not None and osc.source is not None
+    text = block("python", "SimpleUDPClient").text.replace("9000", str(osc.source[1]))
+    runs(how_to_harness, text, tmp_path)
+    how_to_harness.until(lambda: how_to_harness.value("light.sun") == (250.0, 12.0))
+
+
+def test_what_to_do_and_the_controllers_are_as_shown(how_to_harness: Harness, tmp_path: Path) -> None:
+    how_to_harness.open(port=0)
+    wishes = json.loads(block("json", "preset").text)
+    from playground.studio.remote.controls import Controls
+
+    controls = Controls(how_to_harness.bench)
+    assert list(wishes) == controls.names
+    controls.do(wishes)
+    file = tmp_path / "a.controllers"
+    file.write_text(block("toml", "controller").text, encoding="utf-8")
+    (binding,) = read_bindings(file)
+    assert (binding.path, binding.part, binding.source.number) == ("light.sun", "elevation", 21)
+
+
+def test_a_packed_sketch_leaves_its_controllers_behind(how_to_harness: Harness, tmp_path: Path) -> None:
+    from zipfile import ZipFile
+
+    from playground.publish.pack import pack
+
+    (tmp_path / "land" / "sketch.controllers").write_text("format = 1\n", encoding="utf-8")
+    assert how_to_harness.session.sketch is not None
+    names = ZipFile(pack(how_to_harness.session.sketch, tmp_path / "land.zip")).namelist()
+    assert any(name.endswith("sketch.toml") for name in names)
+    assert not any("controllers" in name for name in names)

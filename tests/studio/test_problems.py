@@ -1,4 +1,4 @@
-"""The list of what is wrong: what is in it, what a click and a key do, and the editor in the window."""
+"""What is wrong: the list of errors and the editor, numbers that are not finite, the terminal."""
 
 from __future__ import annotations
 
@@ -7,27 +7,41 @@ import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
+from playground.engine.non_finite import NotFinite
+from playground.engine.sandbox import SandboxReport
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError
+from playground.sketch.templates import make_sketch
 from playground.studio import overlay
+from playground.studio.bench import Workbench
 from playground.studio.code import open_files as sources
 from playground.studio.code import panel as code_window
 from playground.studio.code.editors import Editor
 from playground.studio.code.open_files import typed_in, unsaved
 from playground.studio.code.panel import draw_code
 from playground.studio.draw import plate, plate_size
-from playground.studio.overlay import draw_notices
+from playground.studio.interface import WindowControls
+from playground.studio.overlay import PATIENCE, checking_text, draw_notices
 from playground.studio.problems import panel as errors_list
+from playground.studio.problems.non_finite import REST, FiniteWatch, summary
+from playground.studio.problems.non_finite_panel import place_in, ref_of
 from playground.studio.problems.problems import Problems, Warnings, passes_of
+from playground.studio.problems.terminal_errors import TerminalErrors
+from playground.studio.reload.reload import Follower
+from playground.studio.session import Session
 
 from ..loading import load
-from ..sketch_texts import map_of_height
+from ..sketch_texts import map_of, map_of_height, passes
 from .panel_desk import Bare, errors_of
+from .session_desk import FakeSandbox
+from .test_session import SLOPE
 
 TERRAIN = """// terrain.glsl -- hills
 #include "wave.glsl"
@@ -411,3 +425,409 @@ def test_nothing_wrong_draws_nothing(harness: Harness) -> None:
     harness.run_frames(2)
     assert harness.bench.problems.all == () and errors_list.MAX_ROWS > 0
     assert not any("badge" in label for label in harness.places)
+
+
+# ── non finite ────────────────────────────────────────────────────────────────
+
+
+FIRST = """// first.glsl -- with a hole
+#pragma kernel(output = "first:r32f")
+uniform float root = 0.0; //! slider(-1, 1)
+float kernel(ivec2 texel) { return texel / 2 == ivec2(6, 15) ? sqrt(root) : 0.5; }
+"""
+SECOND = """// second.glsl -- one more
+#pragma kernel(output = "second:r32f")
+uniform sampler2D first; //! input
+float kernel(ivec2 texel) { return 1.0 + texelFetch(first, texel, 0).r; }
+"""
+FINITE_SKETCH = (
+    "format = 1\nsize = 33\n"
+    + passes(first=("./first", "set = { root = -0.5 }"), second=("./second", 'inputs = { first = "first" }'))
+    + map_of("second", channel="red")
+)
+
+
+class Finite:
+    """A session, the watch on it, and a clock that the test moves."""
+
+    def __init__(self, engine: Engine, folder: Path) -> None:
+        for name, text in (("first.glsl", FIRST), ("second.glsl", SECOND), ("sketch.toml", FINITE_SKETCH)):
+            (folder / name).write_text(text, encoding="utf-8")
+        self.time = 100.0
+        self.session = Session(engine, folder, now=lambda: self.time)
+        self.bench = Workbench(
+            self.session, WindowControls(lambda: None), folder=folder, now=lambda: self.time
+        )
+        self.watch = FiniteWatch(lambda: self.time)
+
+    def run_frames(self, seconds: float = 0.0, held: bool = False) -> None:
+        self.time += seconds
+        self.session.frame((40, 40))
+        self.watch.update(self.session, held=held)
+
+    def rest(self) -> list[str]:
+        self.run_frames()
+        self.run_frames(2 * REST)
+        for _ in range(20):
+            self.run_frames()
+        return [result.path for result in self.watch.non_finite]
+
+
+@pytest.fixture
+def finite(any_engine: Engine, tmp_path: Path) -> Iterator[Finite]:
+    made = Finite(any_engine, tmp_path)
+    yield made
+    made.session.release()
+
+
+def test_the_first_pass_is_named_and_what_follows_is_counted(finite: Finite) -> None:
+    assert finite.rest() == ["first", "second"]
+    first = finite.watch.non_finite[0]
+    assert (first.output, first.texel, first.value, first.count) == ("first", (12, 30), "NaN", 4)
+    expected = "pass 'first' makes NaN at texel (12, 30), 4 texels; first of 2 passes"
+    assert summary(finite.watch.non_finite) == expected
+    assert finite.watch.patience is None, "nothing more is waited for"
+
+
+def test_non_finite_scan_waits_for_idle_and_reads_pass_by_pass(finite: Finite) -> None:
+    finite.run_frames()
+    finite.run_frames(REST / 2)
+    assert finite.watch.looks == 0 and finite.watch.patience is not None
+    finite.run_frames(REST, held=True)
+    assert finite.watch.looks == 0
+    for number in range(1, 3):
+        finite.run_frames(REST if number == 1 else 0.0)
+        assert finite.watch.looks == number
+    finite.session.drafts.set("first.root", 0.25)
+    finite.run_frames()
+    assert finite.watch.looks == 2, "another picture: what was under way is of no use"
+
+
+def test_it_goes_once_fixed(finite: Finite) -> None:
+    assert finite.rest()
+    finite.session.drafts.set("first.root", 0.25)
+    assert finite.rest() == []
+    finite.session.drafts.set("first.root", -0.25)
+    assert finite.rest() == ["first", "second"]
+
+
+def test_texture_map_shows_non_finite_texels_in_magenta(finite: Finite) -> None:
+    assert finite.rest()
+    first = finite.watch.non_finite[0]
+    finite.bench.session.show(ref_of(first))
+    assert finite.rest() == ["first", "second"], "what the map does not need is as it was"
+    frame = finite.session.read()
+    assert frame is not None
+    magenta = (frame.array[..., :3] == (255, 0, 255)).all(axis=2)
+    assert 0 < magenta.sum() <= 16
+    x, y = place_in(first, (0.0, 0.0, 40.0, 40.0))
+    assert magenta[int(y), int(x)]
+    finite.session.drafts.set("first.root", 0.25)
+    assert finite.rest() == []
+
+
+def test_a_texture_that_was_read_since_changes_nothing(finite: Finite) -> None:
+    finite.run_frames()
+    finite.session.read_values("first:first")
+    ran = list(finite.session.engine.record.ran)
+    runs = dict(finite.session.engine.runs)
+    assert finite.rest() == ["first", "second"]
+    assert dict(finite.session.engine.runs) == runs and finite.session.engine.record.ran == ran, (
+        "nothing ran again"
+    )
+
+
+def test_time_that_runs_is_looked_at_now_and_then(finite: Finite, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Session, "animated", True)
+    finite.session.clock.playing = True
+    finite.run_frames(held=True)
+    assert finite.watch.looks == 0
+    finite.run_frames()
+    seen = finite.watch.looks
+    assert finite.watch.non_finite and seen > 0
+    for _ in range(10):
+        finite.session.redraw()
+        finite.run_frames(0.05)
+    assert finite.watch.looks == seen
+    finite.run_frames(3.0)
+    assert finite.watch.looks > seen
+
+
+def test_a_map_is_placed_as_its_kernel_places_it() -> None:
+    wide = NotFinite("p", "o", (0, 0), "NaN", 1, (200, 100))
+    assert place_in(wide, (10.0, 20.0, 100.0, 100.0)) == (10.25, 20 + 100 - 25.25)
+    named = replace(wide, path="a.b", output="c", value="infinity")
+    assert summary((named,)) == "pass 'a.b', output 'c', makes infinity at texel (0, 0), 1 texel"
+
+
+def test_the_words_lead_to_the_texture_and_back(
+    any_engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from playground.studio.problems import non_finite_panel as finite
+
+    Finite(any_engine, tmp_path).session.release()
+    bare = Bare(any_engine, tmp_path / "sketch.toml")
+    try:
+        bare._watch(finite.imgui, "small_button")
+        watch = FiniteWatch(lambda: bare.time)
+        draw = bare.draw
+
+        def both() -> None:
+            draw()
+            watch.update(bare.session, held=False)
+            finite.draw_not_finite(watch, bare.session, bare.theme, (400.0, 0.0, 880.0, 720.0))
+
+        monkeypatch.setattr(bare, "draw", both)
+        bare.run_frames(120)
+        bare.click("Show it")
+        assert bare.session.view.map is not None and bare.session.view.map.ref == "first:first"
+        bare.click("Back to the picture")
+        assert bare.session.view.map is None
+    finally:
+        bare.close()
+
+
+def test_nothing_is_done_before_there_is_a_picture() -> None:
+    nothing = SimpleNamespace(shown=None, plan=None)
+    watch = FiniteWatch(lambda: 0.0)
+    watch.update(nothing, held=False)  # type: ignore[arg-type]
+    assert watch.patience is None and watch.looks == 0
+
+
+LIT = """// lit.glsl -- light with a hole
+#pragma kernel(output = "frame:rgba16f")
+uniform float root = 0.0; //! slider(-1, 1)
+uniform sampler2D height; //! input
+vec4 kernel(ivec2 texel) {
+    float found = texelFetch(height, ivec2(0), 0).r;
+    return texel == ivec2(7, 5) ? vec4(sqrt(root)) : vec4(found, 0.25, 0.0, 1.0);
+}
+"""
+SHOWN = """// shown.glsl -- what a screen takes
+#pragma kernel(output = "frame:rgba8")
+uniform sampler2D picture; //! input
+vec4 kernel(ivec2 texel) { return clamp(texelFetch(picture, texel, 0), 0.0, 1.0); }
+"""
+VIEW = (
+    passes(lit="./lit", shown=("./shown", 'inputs = { picture = "lit" }'))
+    + """[inputs]
+height = "lit.height"
+[parameters]
+root = "lit.root"
+"""
+)
+IN_VIEW = """format = 1
+size = 33
+[[pass]]
+name = "height"
+use = "generation/diamond_square"
+[view]
+use = "./look"
+inputs = { height = "height" }
+set = { root = -1.0 }
+"""
+
+
+@pytest.mark.parametrize(
+    ("wired", "by_hand"),
+    [
+        ("", False),
+        ('inputs = { height = "height" }\n', True),
+        ('inputs = { "lit.height" = "height" }\n', False),
+    ],
+)
+def test_a_hole_that_the_view_makes_is_shown_too(
+    any_engine: Engine, tmp_path: Path, wired: str, by_hand: bool
+) -> None:
+    """Whichever way the view's inputs are wired, and whether its values come from the file or the hand."""
+    sketch = IN_VIEW.replace('inputs = { height = "height" }\n', wired)
+    if by_hand:
+        sketch = sketch.replace("set = { root = -1.0 }\n", "")
+    for name, text in (("lit.glsl", LIT), ("shown.glsl", SHOWN), ("look.toml", VIEW)):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    finite = Finite(any_engine, tmp_path)
+    (tmp_path / "sketch.toml").write_text(sketch, encoding="utf-8")
+    finite.session.drafts.reload()
+    finite.run_frames()
+    if by_hand:
+        finite.session.drafts.set("view.root", -1.0)
+    finite.rest()
+    (result,) = finite.watch.non_finite
+    assert (result.path, result.texel, result.size, result.value) == ("view.lit", (7, 5), (40, 40), "NaN")
+    ref = ref_of(result)
+    assert ref == "view.lit:frame" and finite.session.can_show(ref)
+    finite.bench.session.show(ref)
+    finite.run_frames()
+    assert finite.session.view.map is not None and finite.session.error is None and not finite.session.notes
+    frame = finite.session.read()
+    assert frame is not None
+    magenta = np.argwhere((frame.array[::-1, :, :3] == (255, 0, 255)).all(axis=2))
+    assert magenta.tolist() == [[5, 7]], "the texel itself, in a picture of its size"
+    finite.rest()
+    assert finite.watch.non_finite == (result,), "it has its own name, under any name in the map"
+    finite.bench.session.show(None)
+    finite.run_frames()
+    finite.rest()
+    assert finite.watch.non_finite == (result,)
+    finite.session.release()
+
+
+def test_what_the_view_lacks_cannot_be_shown(any_engine: Engine, tmp_path: Path) -> None:
+    finite = Finite(any_engine, tmp_path)
+    finite.run_frames()
+    session = finite.session
+    assert session.can_show("view:frame") and session.can_show("first:first")
+    for wrong in ("view:light", "view.lit:frame", "other:frame", "first.view:first", "view"):
+        assert not session.can_show(wrong)
+    session.release()
+
+
+# ── terminal errors ───────────────────────────────────────────────────────────
+
+
+ONE, OTHER = Diagnostic("no name 'p'", "terrain.glsl", 3), Diagnostic("a ; is missing", "wave.glsl", 7)
+
+
+def test_each_error_is_reported_once_and_again_after_fix() -> None:
+    printed: list[str] = []
+    terminal = TerminalErrors(printed.append)
+    for listed in ([ONE], [ONE], [ONE, OTHER], [OTHER], [], [ONE], [ONE]):
+        terminal.take(listed)
+    assert printed == [str(ONE), str(OTHER), str(ONE)]
+
+
+def test_a_terminal_that_is_gone_stops_nothing() -> None:
+    def gone(_: str) -> None:
+        raise BrokenPipeError
+
+    TerminalErrors(gone).take([ONE])
+
+
+# ── sandbox status ────────────────────────────────────────────────────────────
+
+
+class FakeWatcher:
+    """A watcher that reports what a test sets."""
+
+    def __init__(self) -> None:
+        self.changed: set[Path] = set()
+
+    def take(self) -> set[Path]:
+        changed, self.changed = self.changed, set()
+        return changed
+
+    def follow(self, *_: object, **__: object) -> None:
+        pass
+
+
+@pytest.fixture
+def slope(tmp_path: Path) -> Path:
+    (tmp_path / "inc").mkdir()
+    for name, text in SLOPE.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def test_what_is_tried_is_named_and_timed(slope: Path, any_engine: Engine) -> None:
+    clock, sandbox, watcher = [0.0], FakeSandbox(), FakeWatcher()
+    session = Session(any_engine, slope, sandbox=sandbox, now=lambda: clock[0])
+    follower = Follower(session, watcher)  # type: ignore[arg-type]
+    try:
+        clock[0] = 0.5
+        assert session.drafts.checking == ("sketch.toml", 0.5)
+        sandbox.answer = SandboxReport(True)
+        session.frame((32, 32))
+        assert session.drafts.checking is None
+
+        (slope / "terrain.glsl").write_text(SLOPE["terrain.glsl"].replace("0.25", "0.5"), encoding="utf-8")
+        watcher.changed = {slope / "terrain.glsl"}
+        assert follower.take()
+        clock[0] += 2.0
+        assert session.drafts.checking == ("terrain.glsl", 2.0)
+        (slope / "inc/tilt.glsl").write_text(SLOPE["inc/tilt.glsl"].replace("x)", "y)"), encoding="utf-8")
+        watcher.changed = {
+            slope / "terrain.glsl",
+            slope / "inc/tilt.glsl",
+            slope / "sketch.toml",
+        }
+        assert follower.take()
+        subject = "sketch.toml, terrain.glsl and 1 more"
+        assert session.drafts.checking == (subject, 0.0), "a newer save begins anew"
+    finally:
+        session.release()
+
+
+def test_the_words() -> None:
+    assert checking_text("terrain.glsl", PATIENCE) == "checking terrain.glsl …"
+    assert checking_text("terrain.glsl", 3.9) == "checking terrain.glsl … 3 s"
+
+
+# ── shadowed default ──────────────────────────────────────────────────────────
+
+
+SIZE = (32, 18)
+
+
+@pytest.fixture
+def shadowed_folder(tmp_path: Path) -> Path:
+    made = make_sketch(tmp_path / "hills")
+    change(made / "sketch.toml", "size   = 513", "size = 33")
+    return made
+
+
+def change(path: Path, before: str, after: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert before in text
+    path.write_text(text.replace(before, after), encoding="utf-8")
+
+
+def saved(session: Session) -> tuple[np.ndarray, list[str]]:
+    session.notes.clear()
+    session.drafts.reload()
+    session.frame(SIZE)
+    frame = session.read()
+    assert frame is not None and session.error is None
+    return frame.array, list(session.notes)
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        ("frequency = 5.0", "frequency = 9.0"),
+        ("roughness = 0.42", "roughness = 0.6"),
+        ("ridges    = 0.6", "ridges = 0.1"),
+    ],
+)
+def test_the_first_edit_that_the_readme_proposes_shows(any_engine: Engine, shadowed_folder: Path, edit):
+    """Step 1: in hills/my_land.glsl, change a number and save; the terrain in the window changes."""
+    session = Session(any_engine, shadowed_folder)
+    before, _ = saved(session)
+    change(shadowed_folder / "my_land.glsl", *edit)
+    after, notes = saved(session)
+    assert notes == [] and np.abs(after.astype(int) - before).mean() > 1
+    session.release()
+
+
+@pytest.mark.slow
+def test_a_set_of_the_sketch_is_named_with_its_line(any_engine: Engine, shadowed_folder: Path):
+    change(
+        shadowed_folder / "sketch.toml", 'use  = "./my_land"', 'use  = "./my_land"\nset  = { frequency = 5 }'
+    )
+    session = Session(any_engine, shadowed_folder)
+    before, _ = saved(session)
+    change(shadowed_folder / "my_land.glsl", "frequency = 5.0", "frequency = 9.0")
+    after, notes = saved(session)
+    np.testing.assert_array_equal(after, before)
+    assert notes == [f"height.frequency: the default is 9; {shadowed_folder}/sketch.toml:15 sets 5"]
+    assert saved(session)[1] == []
+    session.release()
+
+
+@pytest.mark.slow
+def test_what_the_panel_sets_is_named_too(any_engine: Engine, shadowed_folder: Path):
+    session = Session(any_engine, shadowed_folder)
+    saved(session)
+    session.drafts.set("height.frequency", 3.0)
+    change(shadowed_folder / "my_land.glsl", "frequency = 5.0", "frequency = 9.0")
+    assert saved(session)[1] == ["height.frequency: the default is 9; the panel sets 3"]
+    session.release()
