@@ -61,7 +61,7 @@ class Bare:
             (imgui, "tree_node_ex"),
             (imgui, "collapsing_header"),
         ):
-            self._watch(owner, name)
+            self.watch(owner, name)
         self.clipboard = ""
         imgui.get_platform_io().platform_set_clipboard_text_fn = self._copied
         self.quits = False
@@ -70,7 +70,7 @@ class Bare:
     def _quit(self) -> None:
         self.quits = True
 
-    def _watch(self, owner: object, name: str) -> None:
+    def watch(self, owner: object, name: str) -> None:
         """Remember where everything is drawn, by its label."""
         draw = getattr(owner, name)
         self._watched.append((owner, name, draw))

@@ -63,6 +63,7 @@ class Harness:
     """A session, and the remotes that drive it."""
 
     def __init__(self, engine: Engine, path: Path) -> None:
+        self._before = set(threading.enumerate())
         self.session = Session(engine, path)
         self.bench = Workbench(self.session, WindowControls(lambda: None), folder=path.parent)
         self.remotes = Remotes()
@@ -120,6 +121,10 @@ class Harness:
             assert time.monotonic() < end, "it does not happen"
             self.frame()
             time.sleep(0.002)
+
+    def threads(self) -> set[threading.Thread]:
+        """Return the threads that were started since, and have not ended."""
+        return set(threading.enumerate()) - self._before
 
     def pressed(self) -> list[str]:
         """Return a list of the buttons that are pressed from now on."""

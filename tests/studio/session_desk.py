@@ -42,9 +42,12 @@ LEVEL, ELEVATION = "height.level", "data.elevation"
 
 
 class FakeSandbox:
-    """A sandbox that answers when a test says so."""
+    """A sandbox that answers when a test says so; ``latest`` is the one that was made last."""
+
+    latest: FakeSandbox
 
     def __init__(self) -> None:
+        type(self).latest = self
         self.requests: list[TrySketch] = []
         self.answer: SandboxReport | None = None
 

@@ -49,7 +49,7 @@ def test_every_error_without_file_is_shown_at_sketch_file(
     def refuse(*_: object, **__: object) -> None:
         raise raised
 
-    monkeypatch.setattr(session, "_draw", refuse)
+    monkeypatch.setattr(session.engine, "draw", refuse)
     session.redraw()
     bare.run_frames()
     error = session.error

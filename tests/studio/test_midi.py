@@ -341,7 +341,7 @@ def test_hotplugged_device_is_found_and_unplugging_is_no_error(
     device.turn(KNOB, 127)
     assert remote.value("height.level") == 1.0
     remote.remotes.close()
-    assert not midi._thread.is_alive()
+    assert remote.threads() == set()
 
 
 @pytest.mark.slow

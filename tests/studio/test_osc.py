@@ -18,7 +18,7 @@ from pythonosc.udp_client import SimpleUDPClient
 from playground import cli
 from playground.errors import ContextError, DataError
 from playground.extras import install_command
-from playground.studio.remote.osc import MAX_WAITING, Osc, messages_of
+from playground.studio.remote.osc import MAX_WAITING, Osc
 from playground.studio.remote.remotes import RemoteOptions, Remotes
 
 from .remote_desk import Harness
@@ -234,14 +234,37 @@ def test_ten_thousand_messages_lose_not_the_last_value(remote: Harness, surface:
     assert remote.notices == []
 
 
+class Heard:
+    """Takes what comes in."""
+
+    def __init__(self) -> None:
+        self.messages: list[tuple[str, list[Any]]] = []
+        self.reports: list[str] = []
+
+    def everything(self) -> list[Any]:
+        return []
+
+    def receive(self, address: str, arguments: list[Any]) -> list[Any]:
+        self.messages.append((address, arguments))
+        return []
+
+    def report_once(self, kind: str, text: str) -> None:
+        self.reports.append(text)
+
+
 def test_what_waits_is_bounded():
-    osc = Osc(None, None)
+    osc, heard = Osc(None, None), Heard()
+    osc.start(heard, lambda: None)  # type: ignore[arg-type]
     for n in range(3 * MAX_WAITING):
         osc._put(message(f"/a/{n}", 1.0))
         osc._put(message("/playground/undo"))
         osc._put(message("/a/0", float(n)))
-    assert len(osc._waiting) == MAX_WAITING and len(osc._acts) == MAX_WAITING and osc._lost == 4 * MAX_WAITING
-    assert osc._waiting[b"/a/0"] == message("/a/0", 3 * MAX_WAITING - 1.0)
+    osc.take()
+    assert [address for address, _ in heard.messages].count("/playground/undo") == MAX_WAITING
+    assert len(heard.messages) == 2 * MAX_WAITING and len(heard.reports) == 1
+    assert [values for address, values in heard.messages if address == "/a/0"] == [[3 * MAX_WAITING - 1.0]]
+    osc.take()
+    assert len(heard.messages) == 2 * MAX_WAITING, "each is done once"
 
 
 def message(address: str, *arguments: Any) -> bytes:
@@ -252,15 +275,16 @@ def message(address: str, *arguments: Any) -> bytes:
 
 
 def test_bytes_that_are_no_osc_raise_nothing():
-    osc = Osc(None, None)
+    osc, heard = Osc(None, None), Heard()
+    osc.start(heard, lambda: None)  # type: ignore[arg-type]
     deep = b""
     for _ in range(2000):
         deep = b"#bundle\0" + struct.pack(">Q", 1) + struct.pack(">i", len(deep)) + deep
     wrong = (b"/", b"/a\0\0\0,f\0\0", b"\0" * 64, b"#bundle\0", deep, bytes(range(256)) * 8)
     for data in wrong:
         osc._put(data)
-        assert all(isinstance(value, bytes) for value in osc._waiting.values())
-        assert [m for value in osc._waiting.values() for m in messages_of(value)] == []
+        osc.take()
+    assert heard.messages == [] and heard.reports
 
 
 def test_osc_port_host_and_package_errors_are_one_message(monkeypatch: pytest.MonkeyPatch):
@@ -294,6 +318,6 @@ def test_closing_frees_the_port_and_ends_the_thread(remote: Harness):
     assert osc is not None
     source = osc.source
     remote.remotes.close()
-    assert not osc._thread.is_alive() and source is not None
+    assert remote.threads() == set() and source is not None
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as again:
         again.bind(source)

@@ -273,7 +273,7 @@ def test_first_picture_reading_file_draws_once_source_ends(session, any_engine, 
     (tmp_path / "other.toml").write_text("format = 1\nsize = 9\n" + text, encoding="utf-8")
     gate.clear()
     made = Session(any_engine, tmp_path / "other.toml", sandbox=FakeSandbox())
-    made.drafts._checks.sandbox.answer = SandboxReport(True)
+    FakeSandbox.latest.answer = SandboxReport(True)
     for _ in range(5):
         made.frame(SIZE)
     assert made.catch_up.source == "height" and made.draws == 0

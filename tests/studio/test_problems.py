@@ -202,7 +202,7 @@ class Harness(Bare):
 def harness(any_engine: Engine, folder: Path) -> Iterator[Harness]:
     made = Harness(any_engine, folder / "sketch.toml")
     for name in ("small_button", "text_link", "input_text_multiline"):
-        made._watch(imgui, name)
+        made.watch(imgui, name)
     yield made
     made.close()
 
@@ -568,7 +568,7 @@ def test_the_words_lead_to_the_texture_and_back(
     Finite(any_engine, tmp_path).session.release()
     bare = Bare(any_engine, tmp_path / "sketch.toml")
     try:
-        bare._watch(finite.imgui, "small_button")
+        bare.watch(finite.imgui, "small_button")
         watch = FiniteWatch(lambda: bare.time)
         draw = bare.draw
 
