@@ -62,70 +62,69 @@ def change(path: Path, old: str, new: str) -> None:
     path.write_text(text.replace(old, new), encoding="utf-8")
 
 
-def test_values_by_hand_outlive_a_change_of_something_else(folder: Path) -> None:
-    old = edited(folder, level=0.9)
-    change(folder / "terrain.glsl", "level + other", "level - other")
-    draft, notes = reload_draft(old, load(folder))
-    assert values_of(draft.sketch)["height.level"] == 0.9
-    assert notes == []
+LINE = "uniform float level = 0.5; //! slider(0, 1)"
+WHOLE = "uniform int level = 1; //! slider(0, 3)"
+MENU = "uniform int level = 0; //! menu({})"
+AS_FLOAT = ("level + other", "float(level) + other")
+# What the user set; then, reload after reload: what is replaced in the files, the values, and the messages.
+RELOADS: dict[str, tuple[dict[str, float], list[tuple[list[tuple[str, str]], dict[str, float], str]]]] = {
+    "something else": ({"level": 0.9}, [([("level + other", "level - other")], {"level": 0.9}, "")]),
+    "a default of its own": ({"level": 0.75}, [([("level = 0.5;", "level = 0.125;")], {"level": 0.75}, "")]),
+    "new defaults": (
+        {"other": 0.75},
+        [([("level = 0.5;", "level = 0.125;"), ("other = 0.5;", "other = 0.625;")],
+          {"level": 0.125, "other": 0.75}, "")],
+    ),
+    "a new value of the file": (
+        {"level": 0.9, "other": 0.8},
+        [([("other = 0.25", "other = 0.3")], {"level": 0.9, "other": 0.3},
+          "height.other: the file's new value, 0.3, is taken")],
+    ),
+    "the very value": ({"other": 0.75}, [([("other = 0.25", "other = 0.75")], {"other": 0.75}, "")]),
+    "another type": (
+        {"level": 1.0},
+        [([(LINE, WHOLE), AS_FLOAT], {"level": 1},
+          "height.level was float and is int now: back to the file's value"),
+         ([(WHOLE, LINE), AS_FLOAT[::-1]], {"level": 0.5}, "")],
+    ),
+    "a smaller range": (
+        {"level": 0.9},
+        [([(LINE, LINE.replace("(0, 1)", "(0, 0.6)"))], {"level": 0.6},
+          "height.level = 0.9 is outside its new range 0 to 0.6: 0.6 is taken")],
+    ),
+    "another name of its pass, and back": (
+        {"level": 0.9},
+        [([('"height"', '"ground"')], {},
+          "height.level is gone; what was set here waits in case it returns"),
+         ([('"ground"', '"height"')], {"level": 0.9}, "")],
+    ),
+    "no such parameter, another, and back": (
+        {"level": 1.0},
+        [([(LINE, "const float level = 0.5;")], {},
+          "height.level is gone; what was set here waits in case it returns"),
+         ([("const float level = 0.5;", WHOLE), AS_FLOAT], {"level": 1}, ""),
+         ([(WHOLE, LINE), AS_FLOAT[::-1]], {"level": 1.0}, "")],
+    ),
+}  # fmt: skip
 
 
-def test_the_file_wins_where_the_file_changed(folder: Path) -> None:
-    old = edited(folder, level=0.9, other=0.8)
-    change(folder / "sketch.toml", "other = 0.25", "other = 0.3")
-    draft, notes = reload_draft(old, load(folder))
-    assert values_of(draft.sketch) == {**values_of(draft.sketch), "height.level": 0.9, "height.other": 0.3}
-    assert len(notes) == 1 and "height.other" in notes[0] and "0.3" in notes[0]
-
-
-def test_a_parameter_of_another_type_falls_back_and_says_so(folder: Path) -> None:
-    old = edited(folder, level=1.0)
-    change(
-        folder / "terrain.glsl",
-        "uniform float level = 0.5; //! slider(0, 1)",
-        "uniform int level = 1; //! slider(0, 3)",
-    )
-    change(folder / "terrain.glsl", "return level +", "return float(level) +")
-    draft, notes = reload_draft(old, load(folder))
-    assert values_of(draft.sketch)["height.level"] == 1
-    assert not draft.edits.has("height.level")
-    assert "was float and is int now" in notes[0]
-
-
-def test_value_outside_new_range_is_clamped_and_reported(folder: Path) -> None:
-    old = edited(folder, level=0.9)
-    change(folder / "terrain.glsl", "level = 0.5; //! slider(0, 1)", "level = 0.5; //! slider(0, 0.6)")
-    draft, notes = reload_draft(old, load(folder))
-    assert values_of(draft.sketch)["height.level"] == 0.6
-    assert notes == ["height.level = 0.9 is outside its new range 0 to 0.6: 0.6 is taken"]
-
-
-def test_a_new_default_shows_unless_the_user_has_set_the_value(folder: Path) -> None:
-    old = edited(folder, other=0.75)
-    change(folder / "terrain.glsl", "level = 0.5;", "level = 0.125;")
-    change(folder / "terrain.glsl", "other = 0.5;", "other = 0.625;")
-    draft, notes = reload_draft(old, load(folder))
-    assert values_of(draft.sketch) == {
-        **values_of(draft.sketch),
-        "height.level": 0.125,
-        "height.other": 0.75,
-    }
-    assert notes == []
-
-
-def test_a_set_value_outlives_a_new_default_of_its_own(folder: Path) -> None:
-    old = edited(folder, level=0.75)
-    change(folder / "terrain.glsl", "level = 0.5;", "level = 0.125;")
-    draft, notes = reload_draft(old, load(folder))
-    assert values_of(draft.sketch)["height.level"] == 0.75 and notes == []
-
-
-def test_value_equal_to_file_stops_being_edit(folder: Path) -> None:
-    old = edited(folder, other=0.75)
-    change(folder / "sketch.toml", "other = 0.25", "other = 0.75")
-    draft, notes = reload_draft(old, load(folder))
-    assert values_of(draft.sketch)["height.other"] == 0.75
-    assert draft.edits == Edits() and notes == []
+@pytest.mark.always
+@pytest.mark.parametrize("name", RELOADS)
+def test_what_was_set_outlives_a_reload_unless_the_file_changed_it(folder: Path, name: str) -> None:
+    values, reloads = RELOADS[name]
+    draft = edited(folder, **values)
+    for replaced, expected, message in reloads:
+        for old, new in replaced:
+            texts = {path: path.read_text(encoding="utf-8") for path in folder.iterdir()}
+            assert any(old in text for text in texts.values())
+            for path, text in texts.items():
+                path.write_text(text.replace(old, new), encoding="utf-8")
+        draft, notes = reload_draft(draft, load(folder))
+        known = {path: value for path, value in values_of(draft.sketch).items() if path.startswith("height.")}
+        assert known == known | {f"height.{key}": value for key, value in expected.items()}
+        assert notes == ([message] if message else [])
+    if name == "the very value":
+        assert draft.edits == Edits()
 
 
 def test_a_value_returns_with_its_technique(folder: Path) -> None:
@@ -152,46 +151,18 @@ def test_a_value_that_another_technique_does_not_take_waits(folder: Path) -> Non
         assert notes == [] and values_of(same.choose("height", "./terrain").sketch)["height.level"] == value
 
 
-def test_a_value_outlives_its_pass(folder: Path) -> None:
-    old = edited(folder, level=0.9)
-    text = (folder / "sketch.toml").read_text(encoding="utf-8")
-    (folder / "sketch.toml").write_text(text.replace('"height"', '"ground"'), encoding="utf-8")
-    gone, notes = reload_draft(old, load(folder))
-    assert len(notes) == 1 and "waits in case it returns" in notes[0]
-    (folder / "sketch.toml").write_text(text, encoding="utf-8")
-    again, notes = reload_draft(gone, load(folder))
-    assert values_of(again.sketch)["height.level"] == 0.9 and notes == []
-
-
-def test_value_waits_while_parameter_has_another_type(folder: Path) -> None:
-    old = edited(folder, level=1.0)
-    text = (folder / "terrain.glsl").read_text(encoding="utf-8")
-    line = "uniform float level = 0.5; //! slider(0, 1)"
-    change(folder / "terrain.glsl", line, "const float level = 0.5;")
-    gone, _ = reload_draft(old, load(folder))
-    (folder / "terrain.glsl").write_text(
-        text.replace(line, "uniform int level = 0; //! slider(0, 3)").replace("level +", "float(level) +"),
-        encoding="utf-8",
-    )
-    other, _ = reload_draft(gone, load(folder))
-    assert values_of(other.sketch)["height.level"] == 0
-    (folder / "terrain.glsl").write_text(text, encoding="utf-8")
-    again, _ = reload_draft(other, load(folder))
-    assert values_of(again.sketch)["height.level"] == 1.0
-
-
 def test_a_choice_keeps_its_name_when_its_menu_is_written_anew(folder: Path) -> None:
-    line = "uniform float level = 0.5; //! slider(0, 1)"
-    change(folder / "terrain.glsl", line, 'uniform int level = 0; //! menu("low", "high")')
-    change(folder / "terrain.glsl", "level +", "float(level) +")
-    old = edited(folder, level=1)
-    change(folder / "terrain.glsl", '"low", "high"', '"none", "low", "high"')
-    moved, notes = reload_draft(old, load(folder))
-    assert values_of(moved.sketch)["height.level"] == 2 and notes == []
-    change(folder / "terrain.glsl", '"none", "low", "high"', '"none", "low"')
-    lost, notes = reload_draft(moved, load(folder))
-    assert values_of(lost.sketch)["height.level"] == 0
-    assert notes == ["height.level: its menu has no 'high' any more: back to the file's value"]
+    change(folder / "terrain.glsl", LINE, MENU.format('"low", "high"'))
+    change(folder / "terrain.glsl", *AS_FLOAT)
+    draft = edited(folder, level=1)
+    lost = "height.level: its menu has no 'high' any more: back to the file's value"
+    for old, menu, value, expected in (
+        ('"low", "high"', '"none", "low", "high"', 2, []),
+        ('"none", "low", "high"', '"none", "low"', 0, [lost]),
+    ):
+        change(folder / "terrain.glsl", old, menu)
+        draft, notes = reload_draft(draft, load(folder))
+        assert values_of(draft.sketch)["height.level"] == value and notes == expected
 
 
 def test_what_is_locked_stays_over_any_change_of_the_files(folder: Path) -> None:
@@ -216,19 +187,6 @@ def test_an_edit_is_taken_back_by_any_name_of_its_parameter(folder: Path) -> Non
     draft = Draft(sketch, sketch, Edits((("height.inner.level", 0.75), ("height.inner.other", 0.125))))
     assert values_of(draft.without("height.high").sketch)["height.inner.level"] == 0.5
     assert values_of(draft.without("height.high").sketch)["height.inner.other"] == 0.125
-
-
-def test_a_parameter_that_goes_and_returns_keeps_its_value(folder: Path) -> None:
-    old = edited(folder, level=0.9)
-    text = (folder / "terrain.glsl").read_text(encoding="utf-8")
-    change(
-        folder / "terrain.glsl", "uniform float level = 0.5; //! slider(0, 1)\n", "const float level = 0.5;\n"
-    )
-    without, notes = reload_draft(old, load(folder))
-    assert "height.level" not in values_of(without.sketch) and "is gone" in notes[0]
-    (folder / "terrain.glsl").write_text(text, encoding="utf-8")
-    again, notes = reload_draft(without, load(folder))
-    assert values_of(again.sketch)["height.level"] == 0.9 and notes == []
 
 
 def test_the_camera_stays_until_the_file_moves_it(folder: Path) -> None:

@@ -469,7 +469,7 @@ def check(engine: Engine, folder: Path, examples: int, steps: int, number: str) 
 
 
 def test_a_session_shows_the_files_with_the_edits(any_engine: Engine, tmp_path: Path) -> None:
-    check(any_engine, tmp_path, 40, 16, "every day")
+    check(any_engine, tmp_path, 32, 14, "every day")
 
 
 @pytest.mark.slow
