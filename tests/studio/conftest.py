@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import ExitStack, closing
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from playground.engine.engine import Engine
+from playground.studio.session import Session
 
-from .panel_desk import Bare
+from .panel_desk import Bare, OpenBare
 from .remote_desk import Harness as RemoteHarness
 from .remote_desk import write_sketch
 from .screen import Screen
-from .session_desk import Harness
+from .session_desk import Harness, OpenSession
 
 
 @pytest.fixture
@@ -30,6 +33,26 @@ def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
     made = Bare(any_engine, folder)
     yield made
     made.close()
+
+
+@pytest.fixture
+def open_bare(any_engine: Engine) -> Iterator[OpenBare]:
+    """Give what opens a panel on a sketch, until the test ends."""
+    with ExitStack() as stack:
+        yield lambda *words, **options: stack.enter_context(closing(Bare(any_engine, *words, **options)))
+
+
+@pytest.fixture
+def open_session(any_engine: Engine) -> Iterator[OpenSession]:
+    """Give what opens a session on a sketch, until the test ends."""
+    with ExitStack() as stack:
+
+        def open_session(path: Path | str, **options: Any) -> Session:
+            session = Session(any_engine, path, **options)
+            stack.callback(session.release)
+            return session
+
+        yield open_session
 
 
 @pytest.fixture

@@ -179,6 +179,9 @@ class Bare:
         imgui.destroy_context(self.context)
 
 
+OpenBare = Callable[..., Bare]
+
+
 def errors_of(bench: Workbench) -> ErrorsList:
     """Return the list of errors of one frame."""
     return ErrorsList(bench.problems, bench.files, bench.session, bench.interface)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from playground.studio.session import Session
 
 from ..sketch_texts import map_of, passes
 
+OpenSession = Callable[..., Session]
 SIZE = (32, 24)
 KERNEL = """#pragma kernel(output = "height:r32f", repeat = "4")
 uniform float level = 0.25; //! slider(0, 1)

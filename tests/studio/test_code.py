@@ -15,7 +15,8 @@ import pytest
 
 from playground.errors import DataError
 from playground.studio.code.editors import Editor, Opener, find_editor, find_terminal
-from playground.studio.code.text_file import OpenText, merge
+from playground.studio.code.open_files import OpenText
+from playground.studio.code.text_file import merge
 
 FILE = Path("/terrain/my hills/terrain.glsl").absolute()
 

@@ -28,13 +28,14 @@ from playground.studio.edits.edits import Edits
 from playground.studio.edits.memory import Compared, Memory, Remembered
 from playground.studio.inspect.inspector import Inspector
 from playground.studio.picture.full_screen import Blend
-from playground.studio.picture.framing import framed
+from playground.studio.picture.view import framed
 from playground.studio.picture.preview import as_preview
 from playground.studio.session import Session
 
 from ..loading import load
 from ..sketch_texts import passes
-from .panel_desk import Bare
+from .panel_desk import OpenBare
+from .session_desk import OpenSession
 
 TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
@@ -68,10 +69,9 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def session(folder: Path, any_engine: Engine) -> Iterator[Session]:
-    made = Session(any_engine, folder, now=lambda: 0.0)
-    yield made
-    made.release()
+def session(folder: Path, open_session: OpenSession) -> Session:
+    made = open_session(folder, now=lambda: 0.0)
+    return made
 
 
 @pytest.fixture
@@ -313,61 +313,55 @@ def test_they_alternate_when_they_flicker(session: Session) -> None:
     see.release()
 
 
-def test_the_line_follows_the_mouse(folder: Path, any_engine: Engine) -> None:
-    bare = Bare(any_engine, folder)
+def test_the_line_follows_the_mouse(folder: Path, open_bare: OpenBare) -> None:
+    bare = open_bare(folder)
     compare, io = bare.bench.inspection.compare, imgui.get_io()
     area = 280.0, 0.0, 1000.0, 720.0
-    try:
-        bare.key(imgui.Key.a)
-        assert compare.on
-        held = []
+    bare.key(imgui.Key.a)
+    assert compare.on
+    held = []
 
-        def mouse(x: float, down: bool) -> None:
-            io.add_mouse_pos_event(x, 400)
-            io.add_mouse_button_event(0, down)
-            imgui.new_frame()
-            held.append(drag_line(compare, area))
-            imgui.render()
+    def mouse(x: float, down: bool) -> None:
+        io.add_mouse_pos_event(x, 400)
+        io.add_mouse_button_event(0, down)
+        imgui.new_frame()
+        held.append(drag_line(compare, area))
+        imgui.render()
 
-        for x, down in ((600, False), (600, True), (700, True), (700, False)):
-            mouse(x, down)
-        assert held == [False] * 4 and compare.split == 0.5  # it was not on the line
-        for x, down in (
-            (780, False),
-            (780, True),
-            (580, True),
-            (2000, True),
-            (480, True),
-            (480, False),
-            (900, False),
-        ):
-            mouse(x, down)
-        assert held[4:] == [False, True, True, True, True, False, False] and compare.split == 0.2
-        bare.run_frames(3)
-        bare.click("##how")
-        bare.click("difference")
-        assert compare.mode is Mode.DIFFERENCE
-        bare.run_frames(2)
-        assert "##gain" in bare.places
-        bare.click("A/B")
-        assert not compare.on
-    finally:
-        bare.close()
+    for x, down in ((600, False), (600, True), (700, True), (700, False)):
+        mouse(x, down)
+    assert held == [False] * 4 and compare.split == 0.5  # it was not on the line
+    for x, down in (
+        (780, False),
+        (780, True),
+        (580, True),
+        (2000, True),
+        (480, True),
+        (480, False),
+        (900, False),
+    ):
+        mouse(x, down)
+    assert held[4:] == [False, True, True, True, True, False, False] and compare.split == 0.2
+    bare.run_frames(3)
+    bare.click("##how")
+    bare.click("difference")
+    assert compare.mode is Mode.DIFFERENCE
+    bare.run_frames(2)
+    assert "##gain" in bare.places
+    bare.click("A/B")
+    assert not compare.on
 
 
-def test_a_swap_can_be_undone(folder: Path, any_engine: Engine) -> None:
-    bare = Bare(any_engine, folder)
-    try:
-        bare.key(imgui.Key.a)
-        bare.session.drafts.set("height.level", 0.9)
-        bare.run_frames(3)
-        bare.click("Back to A")
-        assert bare.session.shown is not None and not bare.session.shown.edits.values
-        bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
-        bare.run_frames(3)
-        assert bare.session.shown.edits.values == (("height.level", 0.9),)
-    finally:
-        bare.close()
+def test_a_swap_can_be_undone(folder: Path, open_bare: OpenBare) -> None:
+    bare = open_bare(folder)
+    bare.key(imgui.Key.a)
+    bare.session.drafts.set("height.level", 0.9)
+    bare.run_frames(3)
+    bare.click("Back to A")
+    assert bare.session.shown is not None and not bare.session.shown.edits.values
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    bare.run_frames(3)
+    assert bare.session.shown.edits.values == (("height.level", 0.9),)
 
 
 # ── memory compare ────────────────────────────────────────────────────────────

@@ -19,7 +19,7 @@ from playground.engine.execution import FrameRecord
 from playground.studio.cost.costs import Record, RunReasons
 from playground.errors import ContextError
 from playground.studio.bench import Workbench
-from playground.studio.inspect.thumbnails import Thumbnails
+from playground.studio.graph.graph import Thumbnails
 from playground.studio.interface import WindowControls
 from playground.studio.picture import disk_caching as module
 from playground.studio.picture.disk_caching import SessionCaching
@@ -28,7 +28,7 @@ from playground.studio.session import Session
 
 from ..sketch_texts import map_of, passes
 from ..variants import trust
-from .panel_desk import Bare
+from .panel_desk import Bare, OpenBare
 
 TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
@@ -53,12 +53,11 @@ use = "./mesh"
 
 
 @pytest.fixture
-def bare(tmp_path: Path, any_engine: Engine) -> Iterator[Bare]:
+def bare(tmp_path: Path, open_bare: OpenBare) -> Bare:
     for name, text in {"terrain.glsl": TERRAIN, "mesh.glsl": MESH, "sketch.toml": SKETCH}.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
-    made = Bare(any_engine, tmp_path, (1280, 1400))
-    yield made
-    made.close()
+    made = open_bare(tmp_path, (1280, 1400))
+    return made
 
 
 def test_a_record_keeps_the_last_numbers_in_order() -> None:

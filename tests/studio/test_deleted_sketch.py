@@ -18,7 +18,7 @@ from playground.studio.session import Session
 
 from .panel_desk import Bare, errors_of
 from .screen import ROOT
-from .session_desk import FakeSandbox
+from .session_desk import FakeSandbox, OpenSession
 from .test_session import SLOPE
 
 
@@ -73,15 +73,14 @@ def test_a_list_that_holds_no_file_is_drawn_all_the_same(bare: Bare) -> None:
 
 @pytest.mark.parametrize("kind", family(), ids=lambda kind: kind.__name__)
 def test_a_refusal_of_the_sandbox_names_the_sketch(
-    folder: Path, any_engine: Engine, kind: type[PlaygroundError]
+    folder: Path, open_session: OpenSession, kind: type[PlaygroundError]
 ) -> None:
     sandbox = FakeSandbox()
     sandbox.answer = SandboxReport(False, kind("refused"))
-    session = Session(any_engine, folder, sandbox=sandbox)
+    session = open_session(folder, sandbox=sandbox)
     session.frame((32, 32))
     if not issubclass(kind, errors.ContextError):  # then the window's own context decides
         assert session.error is not None and session.error.diagnostics[0].file == str(folder / "sketch.toml")
-    session.release()
 
 
 def test_missing_sketch_is_reported_and_resumes_once_restored(folder: Path, any_engine: Engine) -> None:
@@ -103,14 +102,13 @@ def test_missing_sketch_is_reported_and_resumes_once_restored(folder: Path, any_
     session.release()
 
 
-def test_a_folder_that_was_moved_away_says_so(folder: Path, any_engine: Engine) -> None:
-    session = Session(any_engine, folder)
+def test_a_folder_that_was_moved_away_says_so(folder: Path, open_session: OpenSession) -> None:
+    session = open_session(folder)
     session.frame((32, 32))
     folder.rename(folder.with_name("elsewhere"))
     session.drafts.reload()
     message = str(session.error)
     assert "the file is gone with its folder" in message and str(folder) in message
-    session.release()
 
 
 @pytest.mark.slow

@@ -24,15 +24,15 @@ from playground.studio.bench import Workbench
 from playground.studio.compare.compare import Compare
 from playground.studio.edits.edits import Draft, Edits, reload_draft
 from playground.studio.inspect.inspector import Inspector
-from playground.studio.inspect.thumbnails import Thumbnails
+from playground.studio.graph.graph import Thumbnails
 from playground.studio.interface import WindowControls
-from playground.studio.reload.reload_stages import ReloadStage
+from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 
 from ..loading import load
 from ..sketch_texts import map_of, map_of_height, passes
 from .session_desk import ADD as DESK_ADD
-from .session_desk import BAD, ELEVATION, GOOD, LEVEL, FakeSandbox, Harness
+from .session_desk import BAD, ELEVATION, GOOD, LEVEL, FakeSandbox, Harness, OpenSession
 from .session_desk import KERNEL as DESK_KERNEL
 
 KERNEL = """// terrain.glsl -- level terrain
@@ -748,10 +748,9 @@ def data_folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def session(data_folder: Path, any_engine: Engine, read: list[str]) -> Iterator[Session]:
-    made = Session(any_engine, data_folder, sandbox=FakeSandbox())
-    yield made
-    made.release()
+def session(data_folder: Path, open_session: OpenSession, read: list[str]) -> Session:
+    made = open_session(data_folder, sandbox=FakeSandbox())
+    return made
 
 
 def answer(session: Session, report: SandboxReport) -> None:

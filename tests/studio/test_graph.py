@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
-from playground.engine.engine import Engine
 from playground.engine.textures import read_raw
 from playground.paths import SKETCHES
 from playground.studio.graph.graph import (
@@ -19,11 +18,11 @@ from playground.studio.graph.graph import (
     picture_of,
     wiring_of,
 )
-from playground.studio.session import Session
 
 from ..loading import load
 from ..sketch_texts import passes
-from .panel_desk import Bare
+from .panel_desk import Bare, OpenBare
+from .session_desk import OpenSession
 
 TERRAIN = """// terrain.glsl -- a slope from west to east
 #pragma kernel(output = "height:r32f")
@@ -103,8 +102,8 @@ def test_every_sketch_that_ships_has_a_graph(path: Path) -> None:
         assert all(wiring.places[a][0] < wiring.places[b][0] for a, b in wiring.edges)
 
 
-def test_a_thumbnail_is_what_its_texture_shows(folder: Path, any_engine: Engine) -> None:
-    session = Session(any_engine, folder)
+def test_a_thumbnail_is_what_its_texture_shows(folder: Path, open_session: OpenSession) -> None:
+    session = open_session(folder)
     thumbnails = Thumbnails(session)
     assert thumbnails.refresh(["height:height"], 0.0) is False and thumbnails.made == 0  # no picture yet
     session.frame((16, 16))
@@ -119,11 +118,10 @@ def test_a_thumbnail_is_what_its_texture_shows(folder: Path, any_engine: Engine)
         read_raw(tint)[0, 0], [188, 137, 255, 255]
     )  # sRGB of 0.5 and 0.25; 2 is white
     thumbnails.release()
-    session.release()
 
 
-def test_only_what_is_stale_is_drawn_and_one_at_a_time(folder: Path, any_engine: Engine) -> None:
-    session = Session(any_engine, folder)
+def test_only_what_is_stale_is_drawn_and_one_at_a_time(folder: Path, open_session: OpenSession) -> None:
+    session = open_session(folder)
     thumbnails, names = Thumbnails(session), ["height:height", "colour:colour"]
     session.frame((16, 16))
     assert thumbnails.refresh(names, 0.0) and thumbnails.made == 1
@@ -143,7 +141,6 @@ def test_only_what_is_stale_is_drawn_and_one_at_a_time(folder: Path, any_engine:
     thumbnails.refresh(names[1:], 12.0)
     assert thumbnails.get("height:height") is None
     thumbnails.release()
-    session.release()
 
 
 def test_numbers_that_are_none_are_magenta() -> None:
@@ -189,22 +186,19 @@ def test_passes_are_timed_only_on_request(bare: Bare) -> None:
 
 @pytest.mark.parametrize("scale", [1.0, 1.5])
 def test_the_panel_s_head_has_a_button_for_it_and_room_for_all(
-    any_engine: Engine, folder: Path, scale: float
+    open_bare: OpenBare, folder: Path, scale: float
 ) -> None:
-    bare = Bare(any_engine, folder, (1920, 1080), scale)
-    try:
-        bare.run_frames()
-        margin = imgui.get_style().window_padding.x
-        for label in "Undo Redo History Random A/B Reset Copy Save PNG Graph".split():
-            x, _, width, _ = bare.places[label]
-            assert margin <= x and x + width <= bare.panel.width * scale - margin, label
-        graph = bare.bench.inspection.graph
-        bare.click("Graph")
-        assert graph.on
-        bare.click("Graph")
-        assert not graph.on
-    finally:
-        bare.close()
+    bare = open_bare(folder, (1920, 1080), scale)
+    bare.run_frames()
+    margin = imgui.get_style().window_padding.x
+    for label in "Undo Redo History Random A/B Reset Copy Save PNG Graph".split():
+        x, _, width, _ = bare.places[label]
+        assert margin <= x and x + width <= bare.panel.width * scale - margin, label
+    graph = bare.bench.inspection.graph
+    bare.click("Graph")
+    assert graph.on
+    bare.click("Graph")
+    assert not graph.on
 
 
 def test_a_node_says_why_its_pass_ran_last(bare: Bare, monkeypatch: pytest.MonkeyPatch) -> None:

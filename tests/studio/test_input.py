@@ -11,20 +11,20 @@ from types import SimpleNamespace
 import pytest
 from imgui_bundle import ImVec2, imgui
 
-from playground.engine.engine import Engine
 from playground.studio.addition import Addition, Layer
 from playground.studio.code.panel import draw_code
 from playground.studio.guard import Guard
-from playground.studio.input.double_click import APART, Clicks
-from playground.studio.input.escape_layers import open_layers
+from playground.studio.input.double_click import APART
+from playground.studio.window import Clicks
+from playground.studio.keys import open_layers
 from playground.studio.input.keys import KEYS
-from playground.studio.input.releases import after_events, before_release
+from playground.studio.window import after_events, before_release
 from playground.studio.interface import SIZES, InterfaceSize, remembered_size
 from playground.studio.session import Session
 
 from ..cases import each
 from ..sketch_texts import map_of_height
-from .panel_desk import Bare
+from .panel_desk import Bare, OpenBare
 
 TERRAIN = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'
 
@@ -110,10 +110,10 @@ SKETCH = (
 
 
 @pytest.fixture
-def layers_bare(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Bare]:
+def layers_bare(tmp_path: Path, open_bare: OpenBare, monkeypatch: pytest.MonkeyPatch) -> Bare:
     (tmp_path / "terrain.glsl").write_text(LAYERS_TERRAIN)
     (tmp_path / "sketch.toml").write_text(SKETCH)
-    made = Bare(any_engine, tmp_path)
+    made = open_bare(tmp_path)
     draw = made.draw
 
     def both() -> None:
@@ -122,8 +122,7 @@ def layers_bare(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPa
         draw_code(bench.files, bench.problems, bench.window.quit, made.theme, area)
 
     monkeypatch.setattr(made, "draw", both)
-    yield made
-    made.close()
+    return made
 
 
 class Guest(Addition):

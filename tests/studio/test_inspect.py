@@ -27,11 +27,12 @@ from playground.studio.inspect.histogram import (
     ticks,
 )
 from playground.studio.inspect.inspector import Inspector
-from playground.studio.inspect.tooltip import lines_of
+from playground.studio.inspect.panel import lines_of
 from playground.studio.session import Session
 
 from ..sketch_texts import map_of_height, passes
-from .panel_desk import Bare
+from .panel_desk import Bare, OpenBare
+from .session_desk import OpenSession
 
 TERRAIN = """// terrain.glsl -- a slope from west to east
 #pragma kernel(output = "height:r32f")
@@ -137,8 +138,8 @@ def test_a_frame_reads_no_more_than_a_piece(ctx: moderngl.Context, monkeypatch: 
     texture.release()
 
 
-def test_it_follows_the_map_and_begins_anew(folder: Path, any_engine: Engine) -> None:
-    session = Session(any_engine, folder)
+def test_it_follows_the_map_and_begins_anew(folder: Path, open_session: OpenSession) -> None:
+    session = open_session(folder)
     counter = Counter(session, piece=64)
 
     def settle() -> int:
@@ -169,12 +170,13 @@ def test_it_follows_the_map_and_begins_anew(folder: Path, any_engine: Engine) ->
     session.frame((32, 32))
     counter.go_on()
     assert counter.latest is None
-    session.release()
 
 
 @pytest.mark.parametrize("ramp", range(5))
-def test_the_legend_has_the_colours_of_the_map(folder: Path, any_engine: Engine, ramp: int) -> None:
-    session = Session(any_engine, folder)
+def test_the_legend_has_the_colours_of_the_map(
+    folder: Path, any_engine: Engine, open_session: OpenSession, ramp: int
+) -> None:
+    session = open_session(folder)
     session.frame((64, 8))
     session.show("height:height")
     for name, value in (("channel", 1), ("ramp", ramp), ("lowest", 0.0), ("highest", 1.0), ("middle", 0.5)):
@@ -186,12 +188,13 @@ def test_the_legend_has_the_colours_of_the_map(folder: Path, any_engine: Engine,
         legend = np.array(colours_of(any_engine.ctx, ramp)) * 255
     assert len(legend) == STEPS == 64
     np.testing.assert_allclose(frame.array[4, :, :3], legend, atol=0.51)  # the slope has the same 64 numbers
-    session.release()
 
 
 @pytest.mark.parametrize("middle", [0.2, 0.5, 0.9])
-def test_around_a_middle_both_sides_have_one_scale(folder: Path, any_engine: Engine, middle: float) -> None:
-    session = Session(any_engine, folder)
+def test_around_a_middle_both_sides_have_one_scale(
+    folder: Path, any_engine: Engine, open_session: OpenSession, middle: float
+) -> None:
+    session = open_session(folder)
     session.frame((64, 8))
     session.show("height:height")
     for name, value in (("channel", 1), ("ramp", 4), ("middle", middle)):
@@ -209,7 +212,6 @@ def test_around_a_middle_both_sides_have_one_scale(folder: Path, any_engine: Eng
     places = (numbers - low) / (high - low) * (STEPS - 1)
     expected = np.stack([np.interp(places, np.arange(STEPS), legend[:, c]) for c in range(3)], axis=1)
     np.testing.assert_allclose(frame.array[4, :, :3], expected, atol=2.0)
-    session.release()
 
 
 def test_a_range_may_be_any_numbers(folder: Path) -> None:
@@ -305,10 +307,9 @@ def inspector_folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def session(inspector_folder: Path, any_engine: Engine) -> Iterator[Session]:
-    made = Session(any_engine, inspector_folder)
-    yield made
-    made.release()
+def session(inspector_folder: Path, open_session: OpenSession) -> Session:
+    made = open_session(inspector_folder)
+    return made
 
 
 @pytest.fixture
@@ -457,21 +458,18 @@ def test_numbers_that_are_not_finite_are_named(
     assert any("nan" in text for _, text, _ in lines_of(result))
 
 
-def test_a_key_brings_the_box_and_takes_it_away(inspector_folder: Path, any_engine: Engine) -> None:
-    bare = Bare(any_engine, inspector_folder)
-    try:
-        imgui.get_io().add_mouse_pos_event(800, 600)
-        bare.run_frames(2)
-        assert bare.bench.inspection.inspector.reads == 0
-        bare.key(imgui.Key.i)
-        bare.run_frames(2)
-        assert bare.bench.inspection.inspector.reads == 1 and not bare.bench.inspection.inspector.inner
-        imgui.get_io().add_mouse_pos_event(100, 300)  # over the panel
-        bare.run_frames(3)
-        assert bare.bench.inspection.inspector.reads == 1
-        bare.key(imgui.Key.i)
-        imgui.get_io().add_mouse_pos_event(800, 500)
-        bare.run_frames(3)
-        assert bare.bench.inspection.inspector.reads == 1
-    finally:
-        bare.close()
+def test_a_key_brings_the_box_and_takes_it_away(inspector_folder: Path, open_bare: OpenBare) -> None:
+    bare = open_bare(inspector_folder)
+    imgui.get_io().add_mouse_pos_event(800, 600)
+    bare.run_frames(2)
+    assert bare.bench.inspection.inspector.reads == 0
+    bare.key(imgui.Key.i)
+    bare.run_frames(2)
+    assert bare.bench.inspection.inspector.reads == 1 and not bare.bench.inspection.inspector.inner
+    imgui.get_io().add_mouse_pos_event(100, 300)  # over the panel
+    bare.run_frames(3)
+    assert bare.bench.inspection.inspector.reads == 1
+    bare.key(imgui.Key.i)
+    imgui.get_io().add_mouse_pos_event(800, 500)
+    bare.run_frames(3)
+    assert bare.bench.inspection.inspector.reads == 1

@@ -17,15 +17,16 @@ from playground.shader.parameter import shortest
 from playground.sketch.model import Camera, Keyframe, Sketch, Value
 from playground.studio.bench import Workbench
 from playground.studio.clock import Clock
-from playground.studio.input.mouse import PictureMouse
+from playground.studio.mouse import PictureMouse
 from playground.studio.interface import WindowControls
-from playground.studio.keyframes.saved_keyframes import save_keyframes, with_keyframes
-from playground.studio.keyframes.time_range import marks_of, span_of, stepped, toggle_loop
+from playground.studio.save.sketch_file import save_keyframes, with_keyframes
+from playground.studio.clock import marks_of, span_of, stepped, toggle_loop
 from playground.studio.session import Session
 
 from ..loading import load
 from ..sketch_texts import LIT_NOISE, SMALL_VIEW, passes
-from .panel_desk import Bare
+from .panel_desk import Bare, OpenBare
+from .session_desk import OpenSession
 
 TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
@@ -157,17 +158,14 @@ def test_shift_and_a_drag_choose_the_loop(bare: Bare) -> None:
     assert loop is not None and loop == pytest.approx((1.5, 2.7), abs=0.01)
 
 
-def test_a_sketch_that_rests_has_no_bar(folder: Path, any_engine: Engine) -> None:
+def test_a_sketch_that_rests_has_no_bar(folder: Path, open_bare: OpenBare) -> None:
     (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-    bare = Bare(any_engine, folder)
-    try:
-        bare.run_frames(3)
-        assert "##timeline" not in bare.places and not bare.session.animated
-        bare.key(imgui.Key.l)
-        bare.type(".")
-        assert bare.session.clock.loop is None and bare.session.clock.time == 0.0
-    finally:
-        bare.close()
+    bare = open_bare(folder)
+    bare.run_frames(3)
+    assert "##timeline" not in bare.places and not bare.session.animated
+    bare.key(imgui.Key.l)
+    bare.type(".")
+    assert bare.session.clock.loop is None and bare.session.clock.time == 0.0
 
 
 def test_a_drag_begins_where_the_keyframes_left_the_camera(bare: Bare) -> None:
@@ -352,34 +350,30 @@ def test_the_whole_terrain_is_given_in_metres(bench: Workbench, path: Path) -> N
 
 
 @pytest.mark.slow
-def test_a_sketch_that_ships_offers_a_copy(any_engine: Engine, tmp_path: Path) -> None:
-    session = Session(any_engine, "l_dot_n", values={"size": 33})
+def test_a_sketch_that_ships_offers_a_copy(open_session: OpenSession, tmp_path: Path) -> None:
+    session = open_session("l_dot_n", values={"size": 33})
     bench = Workbench(session, WindowControls(lambda: None), folder=tmp_path)
     draw_frame(bench)
     assert not bench.keyframes.add_here([])
     assert bench.file.asks and "belongs to the playground" in bench.file.offer
-    session.release()
 
 
-def test_the_panel_s_list(any_engine: Engine, path: Path) -> None:
-    bare = Bare(any_engine, path, (1280, 3000))
-    try:
-        bare.click("Keyframes###keyframes", 0.3)
-        bare.watch(imgui, "radio_button")
-        for time in (0.0, 2.0):
-            bare.session.clock.time = time
-            bare.session.drafts.set("light.gain", 1.0 + time)
-            bare.run_frames(2)
-            bare.click("Add keyframe here")
-        assert [k.time for k in load(path).keyframes] == [0.0, 2.0]
-        assert dict(load(path).keyframes[1].values) == {"light.gain": 3.0}
-        bare.click("##go")
-        assert bare.session.clock.time == 2.0 and not bare.session.clock.playing
-        bare.click("##ease")
-        bare.click("hold")
-        assert "hold" in [k.ease for k in load(path).keyframes]
-    finally:
-        bare.close()
+def test_the_panel_s_list(open_bare: OpenBare, path: Path) -> None:
+    bare = open_bare(path, (1280, 3000))
+    bare.click("Keyframes###keyframes", 0.3)
+    bare.watch(imgui, "radio_button")
+    for time in (0.0, 2.0):
+        bare.session.clock.time = time
+        bare.session.drafts.set("light.gain", 1.0 + time)
+        bare.run_frames(2)
+        bare.click("Add keyframe here")
+    assert [k.time for k in load(path).keyframes] == [0.0, 2.0]
+    assert dict(load(path).keyframes[1].values) == {"light.gain": 3.0}
+    bare.click("##go")
+    assert bare.session.clock.time == 2.0 and not bare.session.clock.playing
+    bare.click("##ease")
+    bare.click("hold")
+    assert "hold" in [k.ease for k in load(path).keyframes]
 
 
 # ── save keyframes ────────────────────────────────────────────────────────────

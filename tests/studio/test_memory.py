@@ -20,7 +20,7 @@ from playground.sketch.model import Camera
 from playground.studio.edits.autosave import QUIET, TIME, Autosave
 from playground.studio.edits.edits import Edits, FileValue
 from playground.studio.edits.memory import Compared, Memory, Remembered
-from playground.studio.reload.reload_stages import ReloadStage
+from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 
 from ..cases import each

@@ -14,7 +14,7 @@ from playground.data.image_files import read_image, read_png, write_png
 from playground.engine.engine import Engine
 from playground.engine.file_sources import read_mask
 from playground.errors import DataError, ShaderError
-from playground.studio.input.mouse import PictureMouse
+from playground.studio.mouse import PictureMouse
 from playground.studio.paint.brush import ERASER, Brush, Dab, cover
 from playground.studio.paint.layer import MAX_TEXELS, NUMBERS, WEIGHTS, Layer
 from playground.studio.paint.painting import Painting
@@ -23,6 +23,7 @@ from playground.studio.session import Session
 from ..loading import load
 from ..sketch_texts import passes
 from .panel_desk import Bare
+from .session_desk import OpenSession
 
 FILES = {
     "sketch.toml": 'format = 1\nsize = 65\nextent = 1000.0\nrelief = 200.0\nmain = ["height.amount"]\n'
@@ -324,15 +325,14 @@ camera = { azimuth = 180, elevation = 60, distance = 3500 }
 
 
 @pytest.fixture
-def session(tmp_path: Path, any_engine: Engine) -> Iterator[Session]:
+def session(tmp_path: Path, open_session: OpenSession) -> Session:
     (tmp_path / "sketch").mkdir()
     write_png(tmp_path / "sketch" / "none.png", np.zeros((4, 4, 4), np.uint8))
     (tmp_path / "sketch" / "sketch.toml").write_text(SKETCH)
-    made = Session(any_engine, tmp_path / "sketch")
+    made = open_session(tmp_path / "sketch")
     made.frame((160, 120))
     assert made.error is None
-    yield made
-    made.release()
+    return made
 
 
 def test_a_stroke_over_the_picture_is_painted_under_the_mouse(session: Session, tmp_path: Path) -> None:
@@ -598,17 +598,14 @@ def test_the_outline_lies_around_the_place(session: Session, tmp_path: Path) -> 
     assert painting.outline((0.5, 0.999), 32) == []
 
 
-def test_a_sketch_without_a_mask_says_so(tmp_path: Path, any_engine: Engine) -> None:
+def test_a_sketch_without_a_mask_says_so(tmp_path: Path, open_session: OpenSession) -> None:
     text = SKETCH.replace("texturing/alpha_map/mask", "texturing/rock")
     (tmp_path / "plain.toml").write_text(text.replace('set = { image = "none.png" }', ""))
-    session = Session(any_engine, tmp_path / "plain.toml")
-    try:
-        session.frame((80, 60))
-        painting = Painting(session, tmp_path)
-        painting.toggle()
-        assert not painting.on and any("nothing to paint on" in note for note in session.notes)
-    finally:
-        session.release()
+    session = open_session(tmp_path / "plain.toml")
+    session.frame((80, 60))
+    painting = Painting(session, tmp_path)
+    painting.toggle()
+    assert not painting.on and any("nothing to paint on" in note for note in session.notes)
 
 
 def test_paint_is_a_word_of_files_alone(tmp_path: Path) -> None:

@@ -21,16 +21,16 @@ from playground.sketch.assign import values_of
 from playground.studio import draw as panel_rows
 from playground.studio.draw import fitting_path, tooltip_waits
 from playground.sketch.model import Camera, Parameter
-from playground.studio.panel.dome import direction_at, dot_of
-from playground.studio.panel.number_format import decimals, format_of, snapped
-from playground.studio.panel.widgets import CONTROLS
-from playground.studio.picture.camera_drag import Gesture, steered
-from playground.studio.problems.error_excerpt import numbered, short_place
+from playground.studio.widgets import direction_at, dot_of
+from playground.studio.panel.values import decimals, format_of, snapped
+from playground.studio.widgets import CONTROLS
+from playground.studio.picture.gestures import Gesture, steered
+from playground.studio.problems.panel import numbered, short_place
 from playground.studio.save.snapshot import save_new
 from playground.studio.theme import PANEL_WIDTH
 
 from ..sketch_texts import map_of, passes
-from .panel_desk import Bare
+from .panel_desk import Bare, OpenBare
 
 TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
@@ -253,9 +253,9 @@ def test_pictures_never_replace_one_another(bare: Bare, folder: Path) -> None:
 
 @pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 1.0), ((2560, 1440), 2.0)])
 def test_nothing_reaches_beyond_the_panel(
-    folder: Path, any_engine: Engine, size: tuple[int, int], scale: float
+    folder: Path, open_bare: OpenBare, size: tuple[int, int], scale: float
 ) -> None:
-    bare = Bare(any_engine, folder, size, scale)
+    bare = open_bare(folder, size, scale)
     bare.session.drafts.set_all({"height.level": 0.75, "height.count": 5, "height.sun": (90.0, 20.0)})
     bare.places.clear()
     bare.run_frames(3)
@@ -265,7 +265,6 @@ def test_nothing_reaches_beyond_the_panel(
     for name, widget in (("level", ""), ("sun", "-elevation")):
         field, cross = bare.places[f"##height.{name}{widget}"], bare.places[f"##height.{name}-reset"]
         assert field[0] + field[2] <= cross[0], "the reset is next to its field"
-    bare.close()
 
 
 def test_the_key_map_shows_every_key_and_fits(folder: Path, any_engine: Engine) -> None:
@@ -299,7 +298,7 @@ float kernel(ivec2 texel) { return texelFetch(image, texel % textureSize(image, 
 """
 
 
-def test_an_image_that_is_dropped_is_put_where_a_hand_says(folder: Path, any_engine: Engine) -> None:
+def test_an_image_that_is_dropped_is_put_where_a_hand_says(folder: Path, open_bare: OpenBare) -> None:
     write_png(folder / "none.png", np.zeros((4, 4, 4), np.uint8))
     image = folder / "other" / "white.png"
     image.parent.mkdir()
@@ -307,7 +306,7 @@ def test_an_image_that_is_dropped_is_put_where_a_hand_says(folder: Path, any_eng
     (folder / "terrain.glsl").write_text(IMAGE, encoding="utf-8")
     text = SKETCH[: SKETCH.index("[[preset]]")].replace("level = 0.6", 'image = "none.png"')
     (folder / "sketch.toml").write_text(text, encoding="utf-8")
-    bare = Bare(any_engine, folder)
+    bare = open_bare(folder)
     bare.drops.take([image, folder / "other" / "notes.txt"])
     assert "notes.txt is neither a sketch, a shader nor an image" in notices_of(bare)
     bare.run_frames(3)
@@ -327,7 +326,6 @@ def test_an_image_that_is_dropped_is_put_where_a_hand_says(folder: Path, any_eng
     bare.press(False)
     bare.run_frames(2)
     assert bare.drops.waiting == [] and value(bare, "image") == "none.png", "a click outside it cancels"
-    bare.close()
 
 
 def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
@@ -458,8 +456,8 @@ def test_an_image_has_no_place_where_nothing_takes_a_file(bare: Bare, folder: Pa
     assert "no parameter of this sketch takes a file" in notices_of(bare) and bare.drops.waiting == []
 
 
-def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_engine: Engine) -> None:
-    bare = Bare(any_engine, SKETCHES / "white_noise.toml")
+def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, open_bare: OpenBare) -> None:
+    bare = open_bare(SKETCHES / "white_noise.toml")
     bare.bench.commands.folder = tmp_path
     bare.session.drafts.set("height.seed", 4)
     bare.run_frames(2)
@@ -473,7 +471,6 @@ def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_
     bare.click("Save a copy")
     bare.run_frames(5)
     assert bare.session.path == tmp_path / "white_noise" / "sketch.toml" and value(bare, "seed") == 4
-    bare.close()
 
 
 def test_keys_that_come_up_within_the_frame_are_heard(bare: Bare) -> None:

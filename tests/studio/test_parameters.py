@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
-from playground.engine.engine import Engine
 from playground.errors import ParameterError
 from playground.shader.parameter import Widget, coerce, tidied
 from playground.sketch.assign import values_of
@@ -18,14 +17,14 @@ from playground.sketch.model import Camera, Parameter
 from playground.studio.edits.edits import Draft, Edits
 from playground.studio.edits.history import History, State, applied, edits_of, state_of, step_label
 from playground.studio.panel.parameter_list import Filter, filtered, sections_of, set_words, shown_values
-from playground.studio.panel.random_targets import targets
+from playground.studio.panel.randomise import targets
 from playground.studio.panel.randomise import at_random, mutated
 from playground.studio.panel.values import read_typed
-from playground.studio.panel.rows import fitting_label
+from playground.studio.draw import fitting_label
 
 from ..loading import load
 from ..sketch_texts import map_of, map_of_height, passes
-from .panel_desk import Bare
+from .panel_desk import Bare, OpenBare
 
 TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
@@ -88,13 +87,10 @@ def test_shipped_main_parameter_titles_are_distinct_and_fit(bare: Bare) -> None:
     imgui.end_frame()
 
 
-def test_a_sketch_without_such_a_list_shows_its_passes_unfolded(folder: Path, any_engine: Engine) -> None:
+def test_a_sketch_without_such_a_list_shows_its_passes_unfolded(folder: Path, open_bare: OpenBare) -> None:
     (folder / "sketch.toml").write_text(SKETCH.replace('main = ["light.seed", "height.seed"]\n', ""))
-    bare = Bare(any_engine, folder)
-    try:
-        assert "##height.level" in bare.places and "##main height.seed" not in bare.places
-    finally:
-        bare.close()
+    bare = open_bare(folder)
+    assert "##height.level" in bare.places and "##main height.seed" not in bare.places
 
 
 def test_a_main_parameter_is_typed_where_it_was_clicked_on(bare: Bare) -> None:

@@ -23,14 +23,16 @@ from playground.studio.overlay import behind_text
 from playground.studio.paint.brush import Brush
 from playground.studio.paint.painting import Painting
 from playground.studio.picture import catch_up
-from playground.studio.picture.dividers import GRAB_DISTANCE, divider_at, dividers_of, moved
-from playground.studio.picture.part_labels import PictureRegion, parts_of
-from playground.studio.picture.sun_drag import suns_of, turned
+from playground.studio.picture.gestures import GRAB_DISTANCE, divider_at, dividers_of
+from playground.studio.picture.dividers import moved
+from playground.studio.picture.panel import PictureRegion, parts_of
+from playground.studio.picture.gestures import suns_of
+from playground.studio.picture.sun_drag import turned
 from playground.studio.session import Session
 
 from ..loading import load
 from ..sketch_texts import map_of, passes
-from .session_desk import FakeSandbox
+from .session_desk import FakeSandbox, OpenSession
 
 METHODS = GLSL / "sketches" / "lighting_methods.toml"  # three pictures, two lines
 
@@ -161,18 +163,17 @@ def test_the_sun_stops_overhead_and_a_little_below_the_horizon() -> None:
     assert turned((10.0, 5.0), 0.0, -1.0) == (10.0, -10.0)
 
 
-def test_a_drag_turns_every_sun_and_runs_the_light_alone(path: Path, any_engine: Engine) -> None:
-    session = Session(any_engine, path)
-    try:
-        session.frame((64, 48))
-        session.drafts.move_suns(0.1, 0.1)
-        session.frame((64, 48))
-        assert session.sketch is not None
-        assert suns_of(session.sketch) == {"light.sun": (8.0, 29.0), "second.sun": (108.0, 90.0)}
-        assert not [path for path in any_engine.record.ran if path.startswith("height")]
-        assert session.shown is not None and session.shown.edits.has("light.sun")
-    finally:
-        session.release()
+def test_a_drag_turns_every_sun_and_runs_the_light_alone(
+    path: Path, any_engine: Engine, open_session: OpenSession
+) -> None:
+    session = open_session(path)
+    session.frame((64, 48))
+    session.drafts.move_suns(0.1, 0.1)
+    session.frame((64, 48))
+    assert session.sketch is not None
+    assert suns_of(session.sketch) == {"light.sun": (8.0, 29.0), "second.sun": (108.0, 90.0)}
+    assert not [path for path in any_engine.record.ran if path.startswith("height")]
+    assert session.shown is not None and session.shown.edits.has("light.sun")
 
 
 # ── source at work ────────────────────────────────────────────────────────────
@@ -213,15 +214,14 @@ def gate(monkeypatch, cancelled):
 
 
 @pytest.fixture
-def session(tmp_path: Path, any_engine: Engine, gate):
+def session(tmp_path: Path, open_session: OpenSession, gate):
     (tmp_path / "slow.glsl").write_text(SOURCE, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(
         "format = 1\nsize = 9\n" + passes(height="./slow") + map_of("height", "red"), encoding="utf-8"
     )
-    made = Session(any_engine, tmp_path / "sketch.toml")
+    made = open_session(tmp_path / "sketch.toml")
     drawn(made)
-    yield made
-    made.release()
+    return made
 
 
 def drawn(session: Session) -> np.ndarray:
@@ -265,14 +265,14 @@ def test_a_value_set_back_shows_at_once_and_stops_the_work(session, gate, cancel
     assert cancelled.wait(5.0)
 
 
-def test_first_picture_reading_file_draws_once_source_ends(session, any_engine, gate, tmp_path):
+def test_first_picture_reading_file_draws_once_source_ends(session, open_session, gate, tmp_path):
     """What the sandbox has read is not new any more, though nothing was drawn with it yet."""
     np.save(tmp_path / "hills.npy", np.eye(9, dtype=np.float32))
     file = ("generation/heightmap", 'set = { elevation = "hills.npy" }')
     text = passes(hills=file, height=("./slow", 'inputs = { given = "hills" }')) + map_of("height", "red")
     (tmp_path / "other.toml").write_text("format = 1\nsize = 9\n" + text, encoding="utf-8")
     gate.clear()
-    made = Session(any_engine, tmp_path / "other.toml", sandbox=FakeSandbox())
+    made = open_session(tmp_path / "other.toml", sandbox=FakeSandbox())
     FakeSandbox.latest.answer = SandboxReport(True)
     for _ in range(5):
         made.frame(SIZE)
@@ -280,7 +280,6 @@ def test_first_picture_reading_file_draws_once_source_ends(session, any_engine, 
     gate.set()
     drawn(made)
     assert made.draws == 1 and made.plan is not None
-    made.release()
 
 
 # ── what waits for nothing ───────────────────────────────────────────────────
@@ -339,11 +338,11 @@ def test_values_are_not_waited_for(session, gate, closed):
 
 
 @pytest.mark.parametrize("hovers", [True, False])
-def test_a_brush_that_is_pressed_waits_for_no_source(any_engine, gate, closed, tmp_path, hovers):
+def test_a_brush_that_is_pressed_waits_for_no_source(open_session, gate, closed, tmp_path, hovers):
     (tmp_path / "slow.glsl").write_text(SOURCE, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SCULPTED, encoding="utf-8")
     gate.set()
-    made = Session(any_engine, tmp_path / "sketch.toml")
+    made = open_session(tmp_path / "sketch.toml")
     drawn(made)
     painting = Painting(made, tmp_path)
     painting.toggle()
@@ -365,7 +364,6 @@ def test_a_brush_that_is_pressed_waits_for_no_source(any_engine, gate, closed, t
     painting.press((0.5, 0.5))
     painting.release()
     assert painting.layer is not None
-    made.release()
 
 
 # ── catch up ──────────────────────────────────────────────────────────────────
@@ -383,15 +381,14 @@ BEHIND_SKETCH = (
 
 
 @pytest.fixture
-def behind_session(tmp_path: Path, any_engine: Engine):
+def behind_session(tmp_path: Path, open_session: OpenSession):
     (tmp_path / "count.glsl").write_text(COUNT, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(BEHIND_SKETCH, encoding="utf-8")
-    made = Session(any_engine, tmp_path / "sketch.toml")
+    made = open_session(tmp_path / "sketch.toml")
     made.clock.playing = False
     made.frame(SIZE)
     assert made.error is None
-    yield made
-    made.release()
+    return made
 
 
 @pytest.fixture

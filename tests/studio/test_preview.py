@@ -24,18 +24,21 @@ from playground.studio.picture.full_screen import Enlarger
 from playground.sketch.find import find
 from playground.sketch.model import DEFAULT_PICTURE, Camera, Sketch
 from playground.studio.compare.compare import Compare
-from playground.studio.cost.pass_costs import PassCosts
-from playground.studio.inspect.toggles import Inspection
+from playground.studio.cost.costs import PassCosts
+from playground.studio.inspect.inspection import Inspection
 from playground.studio.picture import shown_picture
-from playground.studio.picture.camera_drag import Gesture
-from playground.studio.picture.framing import MAX_FIELD_OF_VIEW, field_for, framed, moved
+from playground.studio.picture.gestures import Gesture
+from playground.studio.picture.view import MAX_FIELD_OF_VIEW, field_for, framed
+from playground.studio.picture.framing import moved
 from playground.studio.picture.preview import GRID, GRID_OF_FEWER, as_preview
-from playground.studio.picture.preview_size import BUDGETS, DIVISORS, chosen
+from playground.studio.picture.preview import BUDGETS, DIVISORS
+from playground.verify.bench.rows import chosen
 from playground.studio.picture.shown_picture import REST
 from playground.studio.session import Session
 
 from ..loading import load
 from ..sketch_texts import passes
+from .session_desk import OpenSession
 
 SKETCH = """format = 1
 size = 129
@@ -124,28 +127,27 @@ def test_the_preview_shows_the_same_land(terrain: Sketch, any_engine: Engine):
     assert (preview != full).any() and far.mean() < 0.1
 
 
-def test_preview_picks_own_variants_when_full_picture_moves(terrain: Sketch, any_engine: Engine):
+def test_preview_picks_own_variants_when_full_picture_moves(
+    terrain: Sketch, any_engine: Engine, open_session: OpenSession
+):
     """What would run of the full picture is no pass of the preview, where the terrain is drawn first."""
-    session = Session(any_engine, terrain.file)
-    try:
-        session.clock.playing = False
+    session = open_session(terrain.file)
+    session.clock.playing = False
+    session.frame((640, 360))
+    session.read()  # in full
+    assert session.sketch is not None and session.error is None
+    camera = session.sketch.camera
+    for number in range(1, 4):
+        session.drafts.set_camera(replace(camera, azimuth=camera.azimuth + number))
         session.frame((640, 360))
-        session.read()  # in full
-        assert session.sketch is not None and session.error is None
-        camera = session.sketch.camera
-        for number in range(1, 4):
-            session.drafts.set_camera(replace(camera, azimuth=camera.azimuth + number))
-            session.frame((640, 360))
-            assert session.error is None
-            assert session.is_preview == any_engine.info.software
-        ran = set(any_engine.record.ran)
-        assert ("view.fast.land" if any_engine.info.software else "view.land") in ran
-    finally:
-        session.release()
+        assert session.error is None
+        assert session.is_preview == any_engine.info.software
+    ran = set(any_engine.record.ran)
+    assert ("view.fast.land" if any_engine.info.software else "view.land") in ran
 
 
 def test_a_saved_text_is_planned_as_a_preview_alone(
-    terrain: Sketch, any_engine: Engine, monkeypatch: pytest.MonkeyPatch
+    terrain: Sketch, any_engine: Engine, open_session: OpenSession, monkeypatch: pytest.MonkeyPatch
 ):
     """The plan in full waits until the picture is there; what only has another comment is asked of that."""
     file = Path(terrain.file)
@@ -160,22 +162,19 @@ def test_a_saved_text_is_planned_as_a_preview_alone(
         "planned",
         lambda sketch, request: planned.append(sketch.picture.samples) or plan(sketch, request),
     )
-    session = Session(any_engine, file)
-    try:
+    session = open_session(file)
+    session.frame((640, 360))
+    session.read()
+    other = text.replace("0.1", "0.2")
+    for saved, in_full in ((other, False), (f"{other}// the same\n", True)):
+        kernel.write_text(saved, encoding="utf-8")
+        planned.clear()
+        session.drafts.reload()
         session.frame((640, 360))
+        assert session.error is None
+        if any_engine.info.software:
+            assert (max(planned) > 1) is in_full
         session.read()
-        other = text.replace("0.1", "0.2")
-        for saved, in_full in ((other, False), (f"{other}// the same\n", True)):
-            kernel.write_text(saved, encoding="utf-8")
-            planned.clear()
-            session.drafts.reload()
-            session.frame((640, 360))
-            assert session.error is None
-            if any_engine.info.software:
-                assert (max(planned) > 1) is in_full
-            session.read()
-    finally:
-        session.release()
 
 
 # ── preview choices ───────────────────────────────────────────────────────────

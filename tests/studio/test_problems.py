@@ -31,16 +31,16 @@ from playground.studio.interface import WindowControls
 from playground.studio.overlay import PATIENCE, checking_text, draw_notices
 from playground.studio.problems import panel as errors_list
 from playground.studio.problems.non_finite import REST, FiniteWatch, summary
-from playground.studio.problems.non_finite_panel import place_in, ref_of
+from playground.studio.problems.panel import place_in, ref_of
 from playground.studio.problems.problems import Problems, Warnings, passes_of
-from playground.studio.problems.terminal_errors import TerminalErrors
-from playground.studio.reload.reload import Follower
+from playground.studio.problems.problems import TerminalErrors
+from playground.studio.reload.watcher import Follower
 from playground.studio.session import Session
 
 from ..loading import load
 from ..sketch_texts import map_of, map_of_height, passes
-from .panel_desk import Bare, errors_of
-from .session_desk import FakeSandbox
+from .panel_desk import Bare, OpenBare, errors_of
+from .session_desk import FakeSandbox, OpenSession
 from .test_session import SLOPE
 
 TERRAIN = """// terrain.glsl -- hills
@@ -561,30 +561,27 @@ def test_a_map_is_placed_as_its_kernel_places_it() -> None:
 
 
 def test_the_words_lead_to_the_texture_and_back(
-    any_engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    any_engine: Engine, open_bare: OpenBare, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from playground.studio.problems import non_finite_panel as finite
 
     Finite(any_engine, tmp_path).session.release()
-    bare = Bare(any_engine, tmp_path / "sketch.toml")
-    try:
-        bare.watch(finite.imgui, "small_button")
-        watch = FiniteWatch(lambda: bare.time)
-        draw = bare.draw
+    bare = open_bare(tmp_path / "sketch.toml")
+    bare.watch(finite.imgui, "small_button")
+    watch = FiniteWatch(lambda: bare.time)
+    draw = bare.draw
 
-        def both() -> None:
-            draw()
-            watch.update(bare.session, held=False)
-            finite.draw_not_finite(watch, bare.session, bare.theme, (400.0, 0.0, 880.0, 720.0))
+    def both() -> None:
+        draw()
+        watch.update(bare.session, held=False)
+        finite.draw_not_finite(watch, bare.session, bare.theme, (400.0, 0.0, 880.0, 720.0))
 
-        monkeypatch.setattr(bare, "draw", both)
-        bare.run_frames(120)
-        bare.click("Show it")
-        assert bare.session.view.map is not None and bare.session.view.map.ref == "first:first"
-        bare.click("Back to the picture")
-        assert bare.session.view.map is None
-    finally:
-        bare.close()
+    monkeypatch.setattr(bare, "draw", both)
+    bare.run_frames(120)
+    bare.click("Show it")
+    assert bare.session.view.map is not None and bare.session.view.map.ref == "first:first"
+    bare.click("Back to the picture")
+    assert bare.session.view.map is None
 
 
 def test_nothing_is_done_before_there_is_a_picture() -> None:
@@ -728,33 +725,30 @@ def slope(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_what_is_tried_is_named_and_timed(slope: Path, any_engine: Engine) -> None:
+def test_what_is_tried_is_named_and_timed(slope: Path, open_session: OpenSession) -> None:
     clock, sandbox, watcher = [0.0], FakeSandbox(), FakeWatcher()
-    session = Session(any_engine, slope, sandbox=sandbox, now=lambda: clock[0])
+    session = open_session(slope, sandbox=sandbox, now=lambda: clock[0])
     follower = Follower(session, watcher)  # type: ignore[arg-type]
-    try:
-        clock[0] = 0.5
-        assert session.drafts.checking == ("sketch.toml", 0.5)
-        sandbox.answer = SandboxReport(True)
-        session.frame((32, 32))
-        assert session.drafts.checking is None
+    clock[0] = 0.5
+    assert session.drafts.checking == ("sketch.toml", 0.5)
+    sandbox.answer = SandboxReport(True)
+    session.frame((32, 32))
+    assert session.drafts.checking is None
 
-        (slope / "terrain.glsl").write_text(SLOPE["terrain.glsl"].replace("0.25", "0.5"), encoding="utf-8")
-        watcher.changed = {slope / "terrain.glsl"}
-        assert follower.take()
-        clock[0] += 2.0
-        assert session.drafts.checking == ("terrain.glsl", 2.0)
-        (slope / "inc/tilt.glsl").write_text(SLOPE["inc/tilt.glsl"].replace("x)", "y)"), encoding="utf-8")
-        watcher.changed = {
-            slope / "terrain.glsl",
-            slope / "inc/tilt.glsl",
-            slope / "sketch.toml",
-        }
-        assert follower.take()
-        subject = "sketch.toml, terrain.glsl and 1 more"
-        assert session.drafts.checking == (subject, 0.0), "a newer save begins anew"
-    finally:
-        session.release()
+    (slope / "terrain.glsl").write_text(SLOPE["terrain.glsl"].replace("0.25", "0.5"), encoding="utf-8")
+    watcher.changed = {slope / "terrain.glsl"}
+    assert follower.take()
+    clock[0] += 2.0
+    assert session.drafts.checking == ("terrain.glsl", 2.0)
+    (slope / "inc/tilt.glsl").write_text(SLOPE["inc/tilt.glsl"].replace("x)", "y)"), encoding="utf-8")
+    watcher.changed = {
+        slope / "terrain.glsl",
+        slope / "inc/tilt.glsl",
+        slope / "sketch.toml",
+    }
+    assert follower.take()
+    subject = "sketch.toml, terrain.glsl and 1 more"
+    assert session.drafts.checking == (subject, 0.0), "a newer save begins anew"
 
 
 def test_the_words() -> None:
@@ -798,36 +792,35 @@ def saved(session: Session) -> tuple[np.ndarray, list[str]]:
         ("ridges    = 0.6", "ridges = 0.1"),
     ],
 )
-def test_the_first_edit_that_the_readme_proposes_shows(any_engine: Engine, shadowed_folder: Path, edit):
+def test_the_first_edit_that_the_readme_proposes_shows(
+    open_session: OpenSession, shadowed_folder: Path, edit
+):
     """Step 1: in hills/my_land.glsl, change a number and save; the terrain in the window changes."""
-    session = Session(any_engine, shadowed_folder)
+    session = open_session(shadowed_folder)
     before, _ = saved(session)
     change(shadowed_folder / "my_land.glsl", *edit)
     after, notes = saved(session)
     assert notes == [] and np.abs(after.astype(int) - before).mean() > 1
-    session.release()
 
 
 @pytest.mark.slow
-def test_a_set_of_the_sketch_is_named_with_its_line(any_engine: Engine, shadowed_folder: Path):
+def test_a_set_of_the_sketch_is_named_with_its_line(open_session: OpenSession, shadowed_folder: Path):
     change(
         shadowed_folder / "sketch.toml", 'use  = "./my_land"', 'use  = "./my_land"\nset  = { frequency = 5 }'
     )
-    session = Session(any_engine, shadowed_folder)
+    session = open_session(shadowed_folder)
     before, _ = saved(session)
     change(shadowed_folder / "my_land.glsl", "frequency = 5.0", "frequency = 9.0")
     after, notes = saved(session)
     np.testing.assert_array_equal(after, before)
     assert notes == [f"height.frequency: the default is 9; {shadowed_folder}/sketch.toml:15 sets 5"]
     assert saved(session)[1] == []
-    session.release()
 
 
 @pytest.mark.slow
-def test_what_the_panel_sets_is_named_too(any_engine: Engine, shadowed_folder: Path):
-    session = Session(any_engine, shadowed_folder)
+def test_what_the_panel_sets_is_named_too(open_session: OpenSession, shadowed_folder: Path):
+    session = open_session(shadowed_folder)
     saved(session)
     session.drafts.set("height.frequency", 3.0)
     change(shadowed_folder / "my_land.glsl", "frequency = 5.0", "frequency = 9.0")
     assert saved(session)[1] == ["height.frequency: the default is 9; the panel sets 3"]
-    session.release()

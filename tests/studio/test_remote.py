@@ -31,8 +31,8 @@ from playground.shader.parameter import coerce, part_names
 from playground.shader.widgets import Widget
 from playground.sketch.assign import range_of
 from playground.sketch.model import Parameter, Value
-from playground.studio.remote.addresses import Addresses
-from playground.studio.remote.controller_file import read_bindings
+from playground.studio.remote.osc import Addresses
+from playground.studio.remote.controllers import read_bindings
 from playground.studio.remote.controls import Behind, Controls
 from playground.studio.remote.remotes import RemoteOptions, Remotes
 from playground.studio.remote.shares import check_shares, share_of, with_share

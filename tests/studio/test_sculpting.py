@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -21,20 +20,21 @@ from playground.engine.textures import read_texture
 from playground.errors import DataError, ParameterError, SketchError
 from playground.sketch.techniques import read_technique
 from playground.studio.actions import Commands
-from playground.studio.capture.captures import Captures
-from playground.studio.edits.latest_write import LatestWrite
+from playground.publish.window.captures import Captures
+from playground.studio.paint.layer import LatestWrite
 from playground.studio.edits.undo import Undo
 from playground.studio.notices import Notices
 from playground.studio.paint.brush import TOOLS, Brush, Dab
 from playground.studio.paint.erode_tool import STAMP, ErodeTool, technique_at
 from playground.studio.paint.layer import NUMBERS, Layer
 from playground.studio.paint.painting import CLICK, MAX_DAB_SECONDS, Painting
-from playground.studio.paint.sculpting import APPROACH, RISE, SHARPEN, sculpt
+from playground.studio.paint.brush import APPROACH, RISE, SHARPEN, sculpt
 from playground.studio.save.sketch_file import SketchFile
 from playground.studio.session import Session
 
 from ..plans import plans_made_whole
 from ..sketch_texts import passes
+from .session_desk import OpenSession
 
 SKETCH = (
     """format = 1
@@ -68,13 +68,12 @@ class Clock:
 
 
 @pytest.fixture
-def session(tmp_path: Path, any_engine: Engine) -> Iterator[Session]:
+def session(tmp_path: Path, open_session: OpenSession) -> Session:
     (tmp_path / "sketch.toml").write_text(SKETCH)
-    made = Session(any_engine, tmp_path / "sketch.toml")
+    made = open_session(tmp_path / "sketch.toml")
     made.frame(PICTURE)
     assert made.error is None
-    yield made
-    made.release()
+    return made
 
 
 @pytest.fixture

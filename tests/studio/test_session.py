@@ -30,7 +30,7 @@ from playground.studio.session import Session
 
 from ..plans import plans_made_whole
 from ..sketch_texts import TERRAIN_IN_3D, map_of_height
-from .session_desk import FakeSandbox
+from .session_desk import FakeSandbox, OpenSession
 
 SIZE = (64, 48)
 KERNEL = """// terrain.glsl -- a slope
@@ -161,9 +161,9 @@ def test_error_is_reported_and_last_good_picture_stays_until_fix(
     np.testing.assert_array_equal(bench.picture(), before)
 
 
-def test_initially_broken_sketch_is_shown_once_fixed(tmp_path: Path, any_engine: Engine) -> None:
+def test_initially_broken_sketch_is_shown_once_fixed(tmp_path: Path, open_session: OpenSession) -> None:
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-    session = Session(any_engine, tmp_path)
+    session = open_session(tmp_path)
     assert session.frame(SIZE) is None and session.sketch is None
     assert "./terrain" in str(session.error)
     (tmp_path / "inc").mkdir()
@@ -171,7 +171,6 @@ def test_initially_broken_sketch_is_shown_once_fixed(tmp_path: Path, any_engine:
     (tmp_path / "terrain.glsl").write_text(KERNEL, encoding="utf-8")
     session.drafts.reload()
     assert session.frame(SIZE) is not None and session.error is None
-    session.release()
 
 
 def test_a_sketch_that_is_not_there_is_refused(tmp_path: Path, any_engine: Engine) -> None:
@@ -190,12 +189,14 @@ def test_nothing_is_drawn_while_nothing_changes(bench: Bench) -> None:
     assert bench.session.draws == draws + 1
 
 
-def test_cpu_renderer_previews_at_once_and_draws_full_at_rest(tmp_path: Path, any_engine: Engine) -> None:
+def test_cpu_renderer_previews_at_once_and_draws_full_at_rest(
+    tmp_path: Path, any_engine: Engine, open_session: OpenSession
+) -> None:
     if not any_engine.info.software:
         pytest.skip("on a GPU every picture is drawn in full")
     now = [100.0]
     (tmp_path / "terrain.toml").write_text(SKETCH_3D, encoding="utf-8")
-    session = Session(any_engine, tmp_path / "terrain.toml", now=lambda: now[0])
+    session = open_session(tmp_path / "terrain.toml", now=lambda: now[0])
     session.frame(SIZE)
     assert session.is_preview and session.draws == 1
     session.frame(SIZE)
@@ -214,7 +215,6 @@ def test_cpu_renderer_previews_at_once_and_draws_full_at_rest(tmp_path: Path, an
     seen = framed(session.sketch, 0.0, DEFAULT_PICTURE, SIZE)
     expected = any_engine.render(seen, size=SIZE).array
     np.testing.assert_array_equal(saved.array[..., :3], expected[..., :3], "what is saved is drawn in full")
-    session.release()
 
 
 def test_time_moves_what_names_it_and_stays_over_a_save(bench: Bench) -> None:
@@ -356,7 +356,7 @@ def test_the_sandbox_comes_first(tried: tuple[Bench, FakeSandbox]) -> None:
 
 
 def test_save_is_planned_during_sandbox_check_without_drawing(
-    tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, any_engine: Engine, open_session: OpenSession, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Until it is allowed the driver gets nothing of it; then a save only has to be drawn."""
     monkeypatch.setattr(ContextInfo, "software", True)
@@ -366,40 +366,36 @@ def test_save_is_planned_during_sandbox_check_without_drawing(
     (tmp_path / "sketch.toml").write_text(own, encoding="utf-8")
     sandbox, size = FakeSandbox(), (640, 360)
     sandbox.answer = SandboxReport(True)
-    session = Session(any_engine, tmp_path / "sketch.toml", sandbox=sandbox)
-    try:
+    session = open_session(tmp_path / "sketch.toml", sandbox=sandbox)
+    session.frame(size)
+    session.read()
+    wholes, runs = plans_made_whole(monkeypatch), sum(any_engine.runs.values())
+    (tmp_path / "own.glsl").write_text(text.replace("0.1", "0.2"), encoding="utf-8")
+    session.drafts.reload()
+    for _ in range(3):
         session.frame(size)
-        session.read()
-        wholes, runs = plans_made_whole(monkeypatch), sum(any_engine.runs.values())
-        (tmp_path / "own.glsl").write_text(text.replace("0.1", "0.2"), encoding="utf-8")
-        session.drafts.reload()
-        for _ in range(3):
-            session.frame(size)
-        planned = len(wholes)
-        assert sum(any_engine.runs.values()) == runs and session.drafts.testing
-        sandbox.answer = SandboxReport(True)
-        session.frame(size)
-        assert session.error is None and sum(any_engine.runs.values()) > runs
-        assert len(wholes) == planned
-    finally:
-        session.release()
+    planned = len(wholes)
+    assert sum(any_engine.runs.values()) == runs and session.drafts.testing
+    sandbox.answer = SandboxReport(True)
+    session.frame(size)
+    assert session.error is None and sum(any_engine.runs.values()) > runs
+    assert len(wholes) == planned
 
 
-def test_a_first_picture_that_fails_is_an_error_and_no_more(tmp_path: Path, any_engine: Engine) -> None:
+def test_a_first_picture_that_fails_is_an_error_and_no_more(
+    tmp_path: Path, open_session: OpenSession
+) -> None:
     """The child had no context to try it in, and here it cannot be drawn: several samples, no image."""
     text = SKETCH_3D.replace("generation/diamond_square", "generation/heightmap")
     (tmp_path / "sketch.toml").write_text(text.replace("[view]", 'set = { elevation = "none.npy" }\n[view]'))
     np.save(tmp_path / "none.npy", np.zeros((3, 3), np.float32))
     sandbox = FakeSandbox()
-    session = Session(any_engine, tmp_path / "sketch.toml", sandbox=sandbox)
-    try:
-        (tmp_path / "none.npy").unlink()
-        sandbox.answer = SandboxReport(False, ContextError("no context"))
-        for _ in range(3):
-            assert session.frame(SIZE) is None
-        assert "none.npy" in str(session.error) and not session.is_preview
-    finally:
-        session.release()
+    session = open_session(tmp_path / "sketch.toml", sandbox=sandbox)
+    (tmp_path / "none.npy").unlink()
+    sandbox.answer = SandboxReport(False, ContextError("no context"))
+    for _ in range(3):
+        assert session.frame(SIZE) is None
+    assert "none.npy" in str(session.error) and not session.is_preview
 
 
 def test_what_the_sandbox_refuses_is_never_drawn(tried: tuple[Bench, FakeSandbox]) -> None:
@@ -532,20 +528,17 @@ def test_stop_step_survives_save_and_is_dropped_if_out_of_range(bench: Bench) ->
     np.testing.assert_array_equal(bench.picture(), whole)
 
 
-def test_an_eye_under_the_terrain_is_reported_once(tmp_path: Path, any_engine: Engine) -> None:
+def test_an_eye_under_the_terrain_is_reported_once(tmp_path: Path, open_session: OpenSession) -> None:
     (tmp_path / "sketch.toml").write_text(SKETCH_3D, encoding="utf-8")
-    session = Session(any_engine, tmp_path / "sketch.toml")
-    try:
+    session = open_session(tmp_path / "sketch.toml")
+    session.frame(SIZE)
+    assert not any("under the terrain" in note for note in session.notes)
+    for azimuth in (20.0, 30.0, 40.0):
+        camera = Camera(azimuth=azimuth, elevation=-40, distance=3000, target=(5120, 5120, 0))
+        session.drafts.set_camera(camera)
         session.frame(SIZE)
-        assert not any("under the terrain" in note for note in session.notes)
-        for azimuth in (20.0, 30.0, 40.0):
-            camera = Camera(azimuth=azimuth, elevation=-40, distance=3000, target=(5120, 5120, 0))
-            session.drafts.set_camera(camera)
-            session.frame(SIZE)
-        assert sum("under the terrain" in note for note in session.notes) == 1
-        assert session.plan is not None and session.plan.eye.position[2] > 0
-    finally:
-        session.release()
+    assert sum("under the terrain" in note for note in session.notes) == 1
+    assert session.plan is not None and session.plan.eye.position[2] > 0
 
 
 PLAIN = """#version 330

@@ -461,6 +461,7 @@ def check(engine: Engine, folder: Path, examples: int, steps: int, number: str) 
         stateful_step_count=steps,
         deadline=None,
         database=None,
+        report_multiple_bugs=False,
         phases=(Phase.generate, Phase.shrink),
         suppress_health_check=list(HealthCheck),
     )

@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 from imgui_bundle import ImVec2, imgui
 
-from playground.engine.engine import Engine
 from playground.sketch.assign import values_of
 from playground.sketch.model import Parameter
 from playground.studio.theme import Theme
 from playground.studio.widgets import knob_of, part_names, place_of_number, slide, slide_whole
 
 from ..sketch_texts import map_of_height
-from .panel_desk import Bare
+from .panel_desk import Bare, OpenBare
 
 WIDE = 150.0
 TERRAIN = """// terrain.glsl -- a slope
@@ -90,12 +89,11 @@ def test_a_number_far_from_the_knob_is_in_the_middle() -> None:
 
 
 @pytest.fixture
-def bare(tmp_path: Path, any_engine: Engine) -> Iterator[Bare]:
+def bare(tmp_path: Path, open_bare: OpenBare) -> Bare:
     (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-    made = Bare(any_engine, tmp_path)
-    yield made
-    made.close()
+    made = open_bare(tmp_path)
+    return made
 
 
 def test_vector_parameter_has_one_stacked_slider_per_component(bare: Bare) -> None:
