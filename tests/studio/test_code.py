@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import random
 import stat
 import subprocess
 import sys
@@ -16,7 +15,6 @@ import pytest
 from playground.errors import DataError
 from playground.studio.code.editors import Editor, Opener, find_editor, find_terminal
 from playground.studio.code.open_files import OpenText
-from playground.studio.code.text_file import merge
 
 FILE = Path("/terrain/my hills/terrain.glsl").absolute()
 
@@ -287,31 +285,3 @@ def test_a_file_that_cannot_be_written_stays_and_says_so(file: Path, monkeypatch
     assert [path.name for path in file.parent.iterdir()] == ["terrain.glsl"]
     monkeypatch.undo()
     assert text.save("mine\n"), "the text is not lost"
-
-
-def test_changes_far_apart_merge_and_near_ones_do_not(file: Path) -> None:
-    text = OpenText.read(file)
-    mine = TEXT.replace("one", "ONE")
-    file.write_text(TEXT.replace("five", "FIVE"), encoding="utf-8")
-    merged = text.merged(mine)
-    assert merged == "ONE\ntwo\nthree\nfour\nFIVE\n"
-    assert text.save(merged), "it has seen theirs"
-    assert merge(TEXT, TEXT.replace("two", "2"), TEXT.replace("two", "II")) is None
-    assert merge(TEXT, TEXT.replace("two", "2"), TEXT.replace("three", "III")) is None, "they adjoin"
-    assert merge(TEXT, mine, mine) == mine, "the same change on both sides is one"
-    assert merge(TEXT, mine, TEXT) == mine and merge(TEXT, TEXT, mine) == mine
-
-
-def test_a_merge_of_changes_to_other_lines_is_both() -> None:
-    """Against the truth: change lines far apart, some by me and some by others."""
-    randoms = random.Random(7)
-    for _ in range(200):
-        lines = [f"line {n}" for n in range(60)]
-        mine, theirs, both = list(lines), list(lines), list(lines)
-        for n in range(0, 60, 4):
-            text = f"new {n}" * randoms.randint(0, 3)
-            whose = randoms.choice((None, mine, theirs))
-            if whose is not None:
-                whose[n] = both[n] = text
-        joined = ["\n".join(t) + "\n" for t in (lines, mine, theirs, both)]
-        assert merge(*joined[:3]) == joined[3]

@@ -22,14 +22,14 @@ from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.studio.compare.compare import PERIOD, Compare, Mode
 from playground.studio.compare.panel import drag_line, shows_first
-from playground.studio.inspect.inspection import Inspection
 from playground.studio.edits.autosave import Autosave
 from playground.studio.edits.edits import Edits
 from playground.studio.edits.memory import Compared, Memory, Remembered
+from playground.studio.inspect.inspection import Inspection
 from playground.studio.inspect.inspector import Inspector
 from playground.studio.picture.full_screen import Blend
-from playground.studio.picture.view import framed
 from playground.studio.picture.preview import as_preview
+from playground.studio.picture.view import framed
 from playground.studio.session import Session
 
 from ..loading import load

@@ -16,9 +16,9 @@ from playground.engine.disk_caching import REST as LAND_RESTS
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.engine.execution import FrameRecord
-from playground.studio.cost.costs import Record, RunReasons
 from playground.errors import ContextError
 from playground.studio.bench import Workbench
+from playground.studio.cost.costs import Record, RunReasons
 from playground.studio.graph.graph import Thumbnails
 from playground.studio.interface import WindowControls
 from playground.studio.picture import disk_caching as module

@@ -23,8 +23,8 @@ from playground.studio.actions import rounded
 from playground.studio.bench import Workbench
 from playground.studio.compare.compare import Compare
 from playground.studio.edits.edits import Draft, Edits, reload_draft
-from playground.studio.inspect.inspector import Inspector
 from playground.studio.graph.graph import Thumbnails
+from playground.studio.inspect.inspector import Inspector
 from playground.studio.interface import WindowControls
 from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session

@@ -14,13 +14,10 @@ from imgui_bundle import ImVec2, imgui
 from playground.studio.addition import Addition, Layer
 from playground.studio.code.panel import draw_code
 from playground.studio.guard import Guard
-from playground.studio.input.double_click import APART
-from playground.studio.window import Clicks
-from playground.studio.keys import open_layers
-from playground.studio.input.keys import KEYS
-from playground.studio.window import after_events, before_release
 from playground.studio.interface import SIZES, InterfaceSize, remembered_size
+from playground.studio.keys import all_keys, open_layers
 from playground.studio.session import Session
+from playground.studio.window import DOUBLE_CLICK_TIME, Clicks, after_events, before_release
 
 from ..cases import each
 from ..sketch_texts import map_of_height
@@ -90,7 +87,7 @@ def test_interface_size_persists_and_invalid_file_uses_default(tmp_path: Path) -
 
 
 def test_no_two_meanings_share_a_key() -> None:
-    struck = Counter((key.key, key.letter, key.sign, key.ctrl, key.shift) for key in KEYS)
+    struck = Counter((key.key, key.letter, key.sign, key.ctrl, key.shift) for key in all_keys())
     assert [keys for keys, count in struck.items() if count > 1] == []
 
 
@@ -126,16 +123,17 @@ def layers_bare(tmp_path: Path, open_bare: OpenBare, monkeypatch: pytest.MonkeyP
 
 
 class Guest(Addition):
-    """What a room adds: one layer, which is open."""
+    """What a room adds: a window of its own and a layer, which are open."""
 
     def __init__(self) -> None:
-        self.is_open = True
-
-    def toggle(self) -> None:
-        self.is_open = not self.is_open
+        self.open = {"dialog", "guest"}
 
     def layers(self) -> list[Layer]:
-        return [("guest", self.toggle)] if self.is_open else []
+        return [("guest", lambda: self.open.remove("guest"))] if "guest" in self.open else []
+
+    def popups(self) -> list[Layer]:
+        name = "dialog"
+        return [(name, lambda: self.open.remove(name))] if name in self.open else []
 
 
 def escape(layers_bare: Bare) -> None:
@@ -154,9 +152,9 @@ def test_one_layer_at_a_time_and_then_none(layers_bare: Bare, tmp_path: Path) ->
     bench.inspection.inspector.toggle()
     bench.inspection.graph.toggle()
     bench.files.open(tmp_path / "terrain.glsl", here=True)
-    bench.captures.shown = bench.interface.keymap_shown = True
+    bench.interface.toggle_keymap()
     layers_bare.run_frames(3)
-    names = ["keys", "capture", "editor terrain.glsl", "graph", "inspector", "A/B", "full screen", "guest"]
+    names = ["keys", "dialog", "editor terrain.glsl", "graph", "inspector", "A/B", "full screen", "guest"]
     for n in range(len(names)):
         assert open_layers(bench) == names[n:]
         escape(layers_bare)
@@ -243,14 +241,14 @@ def test_keys_typed_before_field_gets_focus_go_to_field(layers_bare: Bare) -> No
 
 def test_letters_typed_right_behind_the_search_are_no_shortcuts(layers_bare: Bare) -> None:
     io = imgui.get_io()
-    shown, saved = layers_bare.session.view.map, layers_bare.bench.captures.saved
+    shown, saved = layers_bare.session.view.map, layers_bare.bench.commands.saved_picture
     for letter, key in (("/", imgui.Key.slash), ("m", imgui.Key.m), ("s", imgui.Key.s), ("a", imgui.Key.a)):
         io.add_key_event(key, True)
         io.add_input_character(ord(letter))
         layers_bare.run_frames()
         io.add_key_event(key, False)
     layers_bare.run_frames(4)
-    assert layers_bare.session.view.map is shown and layers_bare.bench.captures.saved is saved
+    assert layers_bare.session.view.map is shown and layers_bare.bench.commands.saved_picture is saved
     assert not layers_bare.bench.inspection.compare.on
     assert layers_bare.panel.memory.filter.search == "msa"
 
@@ -286,7 +284,7 @@ class PictureMouse:
     def draw(self) -> None:
         """Have imgui come to one press, if there is one: as it does, one a frame."""
         longest = self.clicks.double_click_time()
-        if longest != APART:
+        if longest != DOUBLE_CLICK_TIME:
             self.doubles.append(longest > 1.0)
             self.clicks.handled()
 
@@ -312,7 +310,7 @@ def test_while_the_window_sleeps_the_moment_is_known(apart: float, double: bool)
 
 
 def test_without_a_press_imgui_keeps_its_own_time() -> None:
-    assert Clicks().double_click_time() == APART
+    assert Clicks().double_click_time() == DOUBLE_CLICK_TIME
 
 
 # ── releases ──────────────────────────────────────────────────────────────────

@@ -16,11 +16,10 @@ from playground.errors import PlaygroundError, SketchError
 from playground.shader.parameter import shortest
 from playground.sketch.model import Camera, Keyframe, Sketch, Value
 from playground.studio.bench import Workbench
-from playground.studio.clock import Clock
-from playground.studio.mouse import PictureMouse
+from playground.studio.clock import Clock, marks_of, span_of, stepped, toggle_loop
 from playground.studio.interface import WindowControls
+from playground.studio.mouse import PictureMouse
 from playground.studio.save.sketch_file import save_keyframes, with_keyframes
-from playground.studio.clock import marks_of, span_of, stepped, toggle_loop
 from playground.studio.session import Session
 
 from ..loading import load

@@ -12,22 +12,18 @@ from imgui_bundle import imgui
 from playground.data.image_files import write_png
 from playground.engine.camera import look
 from playground.engine.engine import Engine
-from playground.engine.frame import Frame
-from playground.errors import DataError
 from playground.paths import SKETCHES
 from playground.shader.parameter import Widget
 from playground.shader.widgets import WIDGETS
 from playground.sketch.assign import values_of
+from playground.sketch.model import Camera, Parameter
 from playground.studio import draw as panel_rows
 from playground.studio.draw import fitting_path, tooltip_waits
-from playground.sketch.model import Camera, Parameter
-from playground.studio.widgets import direction_at, dot_of
 from playground.studio.panel.values import decimals, format_of, snapped
-from playground.studio.widgets import CONTROLS
 from playground.studio.picture.gestures import Gesture, steered
 from playground.studio.problems.panel import numbered, short_place
-from playground.studio.save.snapshot import save_new
 from playground.studio.theme import PANEL_WIDTH
+from playground.studio.widgets import CONTROLS, direction_at, dot_of
 
 from ..sketch_texts import map_of, passes
 from .panel_desk import Bare, OpenBare
@@ -593,15 +589,3 @@ def test_the_eye_never_goes_over_the_top() -> None:
 def test_a_mouse_that_only_passes_does_nothing() -> None:
     assert not Gesture(480, across=10, down=3).acts
     assert steered(CAMERA, EYE, Gesture(480, across=10)) == CAMERA
-
-
-def test_pictures_never_replace_one_another(tmp_path: Path) -> None:
-    frame = Frame(np.zeros((4, 6, 4), np.uint8), "my sketch/x")
-    names = [save_new(frame, tmp_path, frame.sketch).name for _ in range(3)]
-    assert names == ["my-sketch-x.png", "my-sketch-x-2.png", "my-sketch-x-3.png"]
-    assert sorted(p.name for p in tmp_path.iterdir()) == sorted(names)
-
-
-def test_a_missing_folder_is_reported(tmp_path: Path) -> None:
-    with pytest.raises(DataError, match="nothing can be written here"):
-        save_new(Frame(np.zeros((4, 6, 4), np.uint8)), tmp_path / "none", "a")

@@ -14,13 +14,19 @@ from playground.shader.parameter import Widget, coerce, tidied
 from playground.sketch.assign import values_of
 from playground.sketch.find import find, shipped_sketches
 from playground.sketch.model import Camera, Parameter
+from playground.studio.draw import fitting_label
 from playground.studio.edits.edits import Draft, Edits
 from playground.studio.edits.history import History, State, applied, edits_of, state_of, step_label
-from playground.studio.panel.parameter_list import Filter, filtered, sections_of, set_words, shown_values
-from playground.studio.panel.randomise import targets
-from playground.studio.panel.randomise import at_random, mutated
+from playground.studio.panel.parameter_list import (
+    Filter,
+    filtered,
+    main_items,
+    sections_of,
+    set_words,
+    shown_values,
+)
+from playground.studio.panel.randomise import at_random, mutated, targets
 from playground.studio.panel.values import read_typed
-from playground.studio.draw import fitting_label
 
 from ..loading import load
 from ..sketch_texts import map_of, map_of_height, passes
@@ -54,12 +60,12 @@ def value(bare: Bare, path: str) -> object:
 
 def drawn_for(name: str, *, everything: bool = False) -> tuple[list[str], str]:
     sketch = load(find(name))
-    result, words = targets(Draft(sketch, sketch), Listing(), Filter(), everything=everything)
+    result, words = targets(Draft(sketch, sketch), Filter(), everything=everything)
     return [path for path, _ in result], words
 
 
 def test_main_parameters_come_first_in_order_with_passes_folded(bare: Bare) -> None:
-    result = bare.panel.memory.listing.main(bare.session.shown)
+    result = main_items(bare.session.shown.base)
     assert [item.path for item in result] == ["light.seed", "height.seed"]
     assert [item.title for item in result] == ["Light: seed", "Height: seed"], "a title alone would not do"
     bare.run_frames(2)
@@ -70,7 +76,7 @@ def test_main_parameters_come_first_in_order_with_passes_folded(bare: Bare) -> N
 
 def test_a_label_that_leans_on_its_group_has_it_before_it() -> None:
     sketch = load(find("variants"))
-    titles = {item.path: item.title for item in Listing().main(Draft(sketch, sketch))}
+    titles = {item.path: item.title for item in main_items(sketch)}
     assert titles["weights.rock_slope"] == "Slope: from" and titles["weights.snow_from"] == "Height: from"
     assert titles["by_height.rock_from"] == "Rock from" and titles["view.mode"] == "Compare"
 
@@ -81,7 +87,7 @@ def test_shipped_main_parameter_titles_are_distinct_and_fit(bare: Bare) -> None:
     imgui.new_frame()
     for name in shipped_sketches():
         sketch = load(find(name))
-        titles = [item.title for item in Listing().main(Draft(sketch, sketch))]
+        titles = [item.title for item in main_items(sketch)]
         assert len(set(titles)) == len(titles), name
         assert [title for title in titles if fitting_label(title, room)[1] != title] == [], name
     imgui.end_frame()

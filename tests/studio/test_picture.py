@@ -22,12 +22,16 @@ from playground.sketch.replace_technique import with_technique
 from playground.studio.overlay import behind_text
 from playground.studio.paint.brush import Brush
 from playground.studio.paint.painting import Painting
-from playground.studio.picture import catch_up
-from playground.studio.picture.gestures import GRAB_DISTANCE, divider_at, dividers_of
-from playground.studio.picture.dividers import moved
+from playground.studio.picture import shown_picture
+from playground.studio.picture.gestures import (
+    GRAB_DISTANCE,
+    divider_at,
+    divider_position,
+    dividers_of,
+    suns_of,
+    turned_sun,
+)
 from playground.studio.picture.panel import PictureRegion, parts_of
-from playground.studio.picture.gestures import suns_of
-from playground.studio.picture.sun_drag import turned
 from playground.studio.session import Session
 
 from ..loading import load
@@ -63,7 +67,7 @@ def test_a_sketch_without_any_has_none() -> None:
 
 
 def test_a_line_stays_in_the_picture() -> None:
-    assert [moved(x, 200.0) for x in (-20.0, 0.0, 50.0, 400.0)] == [0.0, 0.0, 0.25, 1.0]
+    assert [divider_position(x, 200.0) for x in (-20.0, 0.0, 50.0, 400.0)] == [0.0, 0.0, 0.25, 1.0]
 
 
 def test_its_value_is_a_share(tmp_path: Path) -> None:
@@ -154,13 +158,13 @@ def test_the_suns_are_those_of_the_passes(path: Path) -> None:
 
 
 def test_full_height_drag_turns_sun_half_around_and_quarter_up() -> None:
-    assert turned((10.0, 20.0), 1.0, 0.0) == (190.0, 20.0)
-    assert turned((350.0, 20.0), 0.25, 0.5) == (35.0, 65.0)
+    assert turned_sun((10.0, 20.0), 1.0, 0.0) == (190.0, 20.0)
+    assert turned_sun((350.0, 20.0), 0.25, 0.5) == (35.0, 65.0)
 
 
 def test_the_sun_stops_overhead_and_a_little_below_the_horizon() -> None:
-    assert turned((10.0, 80.0), 0.0, 1.0) == (10.0, 90.0)
-    assert turned((10.0, 5.0), 0.0, -1.0) == (10.0, -10.0)
+    assert turned_sun((10.0, 80.0), 0.0, 1.0) == (10.0, 90.0)
+    assert turned_sun((10.0, 5.0), 0.0, -1.0) == (10.0, -10.0)
 
 
 def test_a_drag_turns_every_sun_and_runs_the_light_alone(
@@ -394,7 +398,7 @@ def behind_session(tmp_path: Path, open_session: OpenSession):
 @pytest.fixture
 def slow(behind_session, monkeypatch):
     """Let each look at the clock find that time is over."""
-    monkeypatch.setattr(catch_up, "PIECE", -1.0)
+    monkeypatch.setattr(shown_picture, "LOOP_PIECE", -1.0)
     return behind_session
 
 
@@ -451,7 +455,7 @@ def test_a_save_at_a_late_time_shows_how_far_it_came_as_well(slow):
 
 
 def test_a_short_run_is_not_parted(behind_session, monkeypatch):
-    monkeypatch.setattr(catch_up, "PIECE", 3600.0)  # shorter than that on a busy machine too
+    monkeypatch.setattr(shown_picture, "LOOP_PIECE", 3600.0)  # shorter than that on a busy machine too
     behind_session.clock.time = 1.0
     behind_session.frame(SIZE)
     assert behind_session.catch_up.behind is None

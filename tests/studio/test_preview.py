@@ -20,20 +20,24 @@ from playground.engine.engine import Engine
 from playground.engine.textures import read_picture
 from playground.engine.unfinished import PassesUnfinished
 from playground.sketch.assign import values_of
-from playground.studio.picture.full_screen import Enlarger
 from playground.sketch.find import find
 from playground.sketch.model import DEFAULT_PICTURE, Camera, Sketch
 from playground.studio.compare.compare import Compare
 from playground.studio.cost.costs import PassCosts
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.picture import shown_picture
-from playground.studio.picture.gestures import Gesture
-from playground.studio.picture.view import MAX_FIELD_OF_VIEW, field_for, framed
-from playground.studio.picture.framing import moved
-from playground.studio.picture.preview import GRID, GRID_OF_FEWER, as_preview
-from playground.studio.picture.preview import BUDGETS, DIVISORS
-from playground.verify.bench.rows import chosen
+from playground.studio.picture.full_screen import Enlarger
+from playground.studio.picture.gestures import Gesture, steered_through
+from playground.studio.picture.preview import (
+    BUDGETS,
+    DIVISORS,
+    GRID,
+    GRID_OF_FEWER,
+    as_preview,
+    chosen_divisor,
+)
 from playground.studio.picture.shown_picture import REST
+from playground.studio.picture.view import MAX_FIELD_OF_VIEW, field_for, framed
 from playground.studio.session import Session
 
 from ..loading import load
@@ -509,14 +513,18 @@ def test_preview_size_is_steady_under_varying_machine_load(slow: Slow):
 
 def test_preview_size_changes_with_one_fifth_hysteresis():
     by_size = {d: 4.5 * BUDGETS[2] / d**2 for d in DIVISORS}  # a half: 1.125 of its budget
-    assert chosen(by_size, 2) == 2 and chosen(by_size, 3) == 3 and chosen(by_size, 1) == 3
+    assert (
+        chosen_divisor(by_size, 2) == 2
+        and chosen_divisor(by_size, 3) == 3
+        and chosen_divisor(by_size, 1) == 3
+    )
     by_size = {d: 3.6 * BUDGETS[2] / d**2 for d in DIVISORS}
-    assert chosen(by_size, 3) == 3 and chosen(by_size, 1) == 2
+    assert chosen_divisor(by_size, 3) == 3 and chosen_divisor(by_size, 1) == 2
     by_size = {d: 3.0 * BUDGETS[2] / d**2 for d in DIVISORS}
-    assert chosen(by_size, 3) == 2
+    assert chosen_divisor(by_size, 3) == 2
     by_size = {d: 1.1 * BUDGETS[1] / d for d in DIVISORS}
-    assert chosen(by_size, 1) == 1 and chosen(by_size, 2) == 2
-    assert chosen({d: 9.0 + 0.1 / d**2 for d in DIVISORS}, 4) == 1, "fewer pixels gain nothing"
+    assert chosen_divisor(by_size, 1) == 1 and chosen_divisor(by_size, 2) == 2
+    assert chosen_divisor({d: 9.0 + 0.1 / d**2 for d in DIVISORS}, 4) == 1, "fewer pixels gain nothing"
 
 
 def test_a_simulation_keeps_its_size(slow: Slow, tmp_path: Path):
@@ -844,7 +852,7 @@ def test_gesture_moves_camera_as_seen_and_keeps_field_of_view() -> None:
     wide = replace(camera, field_of_view=field_for(camera.field_of_view, DEFAULT_PICTURE, NARROW))
     gesture = Gesture(height=720.0, across=100.0, panning=True)
     target = np.array([[EXTENT[0] / 2, EXTENT[1] / 2, RELIEF / 2]])  # it goes with the mouse
-    after = moved(camera, look(wide, EXTENT, RELIEF, NARROW), gesture, wide)
+    after = steered_through(camera, look(wide, EXTENT, RELIEF, NARROW), gesture, wide)
     assert after.field_of_view == camera.field_of_view
     seen = replace(after, field_of_view=wide.field_of_view)
     assert across(seen, NARROW, target)[0] * NARROW[0] / 2 == pytest.approx(100.0, rel=1e-3)

@@ -32,8 +32,7 @@ from playground.studio.overlay import PATIENCE, checking_text, draw_notices
 from playground.studio.problems import panel as errors_list
 from playground.studio.problems.non_finite import REST, FiniteWatch, summary
 from playground.studio.problems.panel import place_in, ref_of
-from playground.studio.problems.problems import Problems, Warnings, passes_of
-from playground.studio.problems.problems import TerminalErrors
+from playground.studio.problems.problems import Problems, TerminalErrors, Warnings, passes_of
 from playground.studio.reload.watcher import Follower
 from playground.studio.session import Session
 
@@ -563,7 +562,7 @@ def test_a_map_is_placed_as_its_kernel_places_it() -> None:
 def test_the_words_lead_to_the_texture_and_back(
     any_engine: Engine, open_bare: OpenBare, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from playground.studio.problems import non_finite_panel as finite
+    from playground.studio.problems import panel as finite
 
     Finite(any_engine, tmp_path).session.release()
     bare = open_bare(tmp_path / "sketch.toml")

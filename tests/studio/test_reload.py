@@ -27,9 +27,8 @@ from playground.sketch.load import load_with
 from playground.sketch.model import Camera, kernels_of
 from playground.sketch.variants import NAME
 from playground.studio.edits.technique_cache import TechniqueCache
-from playground.studio.reload.watcher import Follower
 from playground.studio.reload.stages import ReloadStage, explained, missing_file_error
-from playground.studio.reload.watcher import Watcher
+from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.session import Session
 
 from ..loading import load

@@ -26,16 +26,15 @@ from playground.engine.engine import Engine
 from playground.errors import ContextError, DataError, ParameterError, PlaygroundError
 from playground.extras import install_command
 from playground.local_server import MAX_UNAUTHENTICATED
-from playground.studio.remote.controls import MAX_WAITING, Busy, Calls
 from playground.shader.parameter import coerce, part_names
 from playground.shader.widgets import Widget
 from playground.sketch.assign import range_of
 from playground.sketch.model import Parameter, Value
-from playground.studio.remote.osc import Addresses
+from playground.studio.panel.values import check_range, value_fraction, with_fraction
 from playground.studio.remote.controllers import read_bindings
-from playground.studio.remote.controls import Behind, Controls
+from playground.studio.remote.controls import MAX_WAITING, Behind, Busy, Calls, Controls
+from playground.studio.remote.osc import Addresses
 from playground.studio.remote.remotes import RemoteOptions, Remotes
-from playground.studio.remote.shares import check_shares, share_of, with_share
 
 from ..crowds import crowd, wait_until_open
 from ..docs.pages import DOCS, Block, blocks_of
@@ -708,10 +707,10 @@ def test_every_fraction_gives_valid_value_at_its_position(parameter: Parameter, 
     choices = len(parameter.widget.choices) or (2 if parameter.type == "bool" else 0)
     for part, step in itertools.product(range(len(part_names(parameter)) or 1), range(0, 128, 7)):
         share = step / 127
-        made = with_share(parameter, value, share, part)
+        made = with_fraction(parameter, value, share, part)
         assert coerce(parameter, made) == made
         assert type(made) is type(value) or parameter.type == "bool"
-        back = share_of(parameter, made, part)
+        back = value_fraction(parameter, made, part)
         ends = range_of(parameter, part) or (0.0, 1.0)
         whole = parameter.type.startswith(("i", "u"))
         grain = 1.0 if whole else parameter.step or 0.0
@@ -730,23 +729,23 @@ def test_the_ends_are_those_of_the_range():
         if parameter.widget.kind in ("slider", "log_slider", "angle", "point"):
             low, high = range_of(parameter) or (0, 0)
             for share, end in ((0.0, low), (1.0, high), (-1.0, low), (2.0, high)):
-                made = with_share(parameter, value, share)
+                made = with_fraction(parameter, value, share)
                 assert (made[0] if isinstance(made, tuple) else made) == end
 
 
 def test_steps_are_counted_from_the_lower_end():
     parameter = Parameter("a", "float", 0.0, Widget("slider", 0.25, 1.25), step=0.5)
-    assert {with_share(parameter, 0.25, n / 127) for n in range(128)} == {0.25, 0.75, 1.25}
+    assert {with_fraction(parameter, 0.25, n / 127) for n in range(128)} == {0.25, 0.75, 1.25}
 
 
 def test_what_has_no_range_is_refused_in_a_sentence():
-    check_shares(ALL[0][0], "a")
+    check_range(ALL[0][0], "a")
     for parameter, why in (
         (Parameter("a", "float", 0.0), "no range"),
         (Parameter("a", "sampler2D", "", Widget("file")), "names a file"),
     ):
         with pytest.raises(ParameterError, match=why):
-            check_shares(parameter, "height.a")
+            check_range(parameter, "height.a")
 
 
 # ── how to ────────────────────────────────────────────────────────────────────

@@ -20,15 +20,12 @@ from playground.engine.textures import read_texture
 from playground.errors import DataError, ParameterError, SketchError
 from playground.sketch.techniques import read_technique
 from playground.studio.actions import Commands
-from playground.publish.window.captures import Captures
-from playground.studio.paint.layer import LatestWrite
 from playground.studio.edits.undo import Undo
 from playground.studio.notices import Notices
-from playground.studio.paint.brush import TOOLS, Brush, Dab
+from playground.studio.paint.brush import APPROACH, RISE, SHARPEN, TOOLS, Brush, Dab, sculpt
 from playground.studio.paint.erode_tool import STAMP, ErodeTool, technique_at
-from playground.studio.paint.layer import NUMBERS, Layer
+from playground.studio.paint.layer import NUMBERS, LatestWrite, Layer
 from playground.studio.paint.painting import CLICK, MAX_DAB_SECONDS, Painting
-from playground.studio.paint.brush import APPROACH, RISE, SHARPEN, sculpt
 from playground.studio.save.sketch_file import SketchFile
 from playground.studio.session import Session
 
@@ -752,26 +749,7 @@ def test_what_cannot_be_written_is_said_once_and_tried_again(
     np.testing.assert_array_equal(read_numbers(layer.path, layer.size), layer.pixels)
 
 
-def test_a_capture_waits_for_the_file_that_it_reads(
-    session: Session, painting: Painting, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    stroke(painting, PLACE)
-    painting.press(PLACE)
-    captures = Captures(session=session, notices=Notices(), folder=tmp_path, settle=painting.settle)
-    layer, result = painting.layer, []
-    assert layer is not None and layer.kind is NUMBERS and not layer.saved
-
-    def job() -> None:
-        result.append(read_numbers(layer.path, layer.size))
-        raise DataError("enough")
-
-    monkeypatch.setattr(captures, "job", job)
-    captures.start()
-    np.testing.assert_array_equal(result[0], layer.pixels)
-    painting.close()
-
-
-def test_unwritable_painting_blocks_capture_and_save_reports_it(
+def test_saving_reports_a_painting_that_cannot_be_written(
     session: Session, painting: Painting, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stroke(painting, PLACE)
@@ -783,18 +761,8 @@ def test_unwritable_painting_blocks_capture_and_save_reports_it(
 
     monkeypatch.setattr(layer, "kind", replace(NUMBERS, write=fail))
     stroke(painting, PLACE)
-    captures = Captures(session=session, notices=notices, folder=tmp_path, settle=painting.settle)
-    made: list[object] = []
-
-    def job() -> None:
-        made.append(None)
-        raise DataError("enough")
-
-    monkeypatch.setattr(captures, "job", job)
     session.notes.clear()
-    captures.start()
-    assert not made and captures.working is None
-    assert captures.failed == "no capture was made, for what was painted last could not be written"
+    assert not painting.settle()
     assert list(session.notes) == ["no space left on device"]
     file = SketchFile(session, notices)
     commands = Commands(session, notices, Undo(session, notices, painting, file), file, tmp_path)
@@ -808,8 +776,7 @@ def test_unwritable_painting_blocks_capture_and_save_reports_it(
     monkeypatch.setattr(layer, "kind", NUMBERS)
     commands.save_values()
     assert not notices.items[-1].text.endswith(missed)
-    captures.start()
-    assert made, "what can be written again is captured"
+    assert painting.settle()
     painting.close()
 
 

@@ -21,9 +21,9 @@ from playground.engine.sandbox import SandboxReport
 from playground.errors import ContextError, SandboxTimeout, SketchError
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE, Camera
-from playground.studio.picture.view import framed
 from playground.studio import app
 from playground.studio.picture import shown_picture
+from playground.studio.picture.view import framed
 from playground.studio.reload.dependencies import files_of
 from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session

@@ -756,7 +756,7 @@ def test_tour_of_a_shader_of_another_tool(screen: Screen, tmp_path: Path) -> Non
 @pytest.mark.room("dialects")
 @pytest.mark.usefixtures("clipboard")
 def test_the_clipboard_is_read_before_there_is_a_window(screen: Screen) -> None:
-    read = "from playground.studio.clipboard import clipboard_text\nprint(clipboard_text(), end='')"
+    read = "from playground.studio.window import clipboard_text\nprint(clipboard_text(), end='')"
     environment = {**os.environ, "DISPLAY": screen.display, "PYTHONPATH": str(ROOT)}
     result = subprocess.run(
         [sys.executable, "-c", read], env=environment, capture_output=True, text=True, timeout=60, check=True
