@@ -33,7 +33,6 @@ from playground.studio.session import Session
 
 from ...sketch_texts import map_of_height
 from ...studio.panel_desk import Bare
-from .panel_desk import OpenBare
 
 TERRAIN = """// terrain.glsl -- a slope that goes up
 #pragma kernel(output = "height:r32f")
@@ -265,7 +264,7 @@ def test_capture_waits_for_painted_files_and_none_starts_without(captures: Captu
 
 
 def test_the_window_is_there_for_c_and_goes_with_esc(
-    open_bare: OpenBare, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    any_engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
