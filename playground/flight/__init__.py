@@ -1,4 +1,5 @@
-"""Fly over endless terrain, generated during the flight: parts, budget, flight model, record and replay.
+"""Flight: over endless terrain that is generated during the flight, with record and replay.
 
-There is no window here. ``layout`` says what a flight requires of a sketch.
+``layout`` says what a flight requires of a sketch; ``window`` alone opens one. Needs the core and the studio.
+To delete it: this folder, tests/flight and its line in rooms.py.
 """

@@ -146,8 +146,7 @@ def read_radius(text: str) -> float | None:
 
 def _write(request: Request) -> None:
     """Write the pictures of a recorded flight into the folder, and print their paths."""
-    from playground.flight.flight import CACHE_BYTES
-    from playground.flight.frames import EVERY, count_frames, prepared, write_frames
+    from playground.flight.flight import CACHE_BYTES, EVERY, count_frames, prepared, write_frames
     from playground.flight.record import read_record
 
     record = read_record(request.replay)

@@ -16,22 +16,21 @@ import math
 import time
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.textures import bytes_of, make_texture, read_texture
+from playground.engine.textures import bytes_of, make_framebuffer, make_texture, read_texture
 from playground.errors import SketchError
-from playground.flight.cutter import Cutter
-from playground.flight.daylight import daylight_of
-from playground.flight.groves import Grove
 from playground.flight.layout import DAYLIGHT, DENSITY, FARTHEST, LIGHT, VISIBILITY, PartName, Plot
+from playground.flight.programs import screen_program
 from playground.sketch.model import Sketch
 
 if TYPE_CHECKING:
     import moderngl
+
 
 MAX_BYTES = 2 * 2**30
 """Of all parts in memory at once."""
@@ -325,3 +324,213 @@ def _around(radius: float) -> NDArray[np.int64]:
 def _clamped(number: int) -> int:
     """Clamp a part's number so that its nodes fit an integer of 32 bits: the terrain ends there."""
     return min(max(number, -FARTHEST), FARTHEST)
+
+
+# ── cut from the sketch's textures ─────────────────────────────────────────────
+
+
+PROGRAMS = ("part_heights", "part_ground", "part_map")
+
+
+class Cutter:
+    """Fills a slot's textures; the light is multiplied into the colour that is there."""
+
+    def __init__(self, ctx: moderngl.Context, plot: Plot) -> None:
+        self.ctx: Any = ctx
+        self.plot = plot
+        self._programs = [screen_program(ctx, name) for name in PROGRAMS]
+        self._arrays = [ctx.vertex_array(program, []) for program in self._programs]
+        self._surfaces: dict[int, moderngl.Framebuffer] = {}  # by the texture's own number
+
+    def heights(self, target: moderngl.Texture, source: moderngl.Texture) -> None:
+        """Cut the heights of the part's own nodes."""
+        self._draw(0, target, source, apron=self.plot.apron)
+
+    def ground(
+        self,
+        target: moderngl.Texture,
+        name: str,
+        source: moderngl.Texture,
+        *,
+        first: bool,
+        sky: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    ) -> None:
+        """Cut the part's own texels, over what is there or times it; ``sky``: its light in the source."""
+        start, rise = self.plot.shares[name]
+        if not first:
+            self.ctx.enable_only(self.ctx.BLEND)
+            self.ctx.blend_func = self.ctx.DST_COLOR, self.ctx.ZERO
+        self._draw(1, target, source, first=start, rise=rise, sky=sky)
+        self.ctx.enable_only(0)
+        self.ctx.blend_func = self.ctx.DEFAULT_BLENDING
+
+    def woods(self, target: moderngl.Texture, source: moderngl.Texture, channel: int) -> None:
+        """Cut one number of the part's own texels into a channel."""
+        plot, surface = self.plot, self._surface(target)
+        each = (source.width - 1) / (plot.intervals + 2 * plot.apron)
+        rise = each * plot.intervals / (target.width - 1)
+        surface.color_mask = channel == 0, channel == 1, False, False
+        self._draw(2, target, source, first=plot.apron * each, rise=rise)
+        surface.color_mask = True, True, True, True
+
+    def sunny(self, target: moderngl.Texture) -> None:
+        """Leave all of the sun to woods: the sketch does not say what of it is visible."""
+        self._surface(target).clear(0.0, 1.0, 0.0, 0.0)
+
+    def bare(self, target: moderngl.Texture) -> None:
+        """Fill with grey: the sketch has neither colour nor light."""
+        self._surface(target).clear(0.7, 0.7, 0.7, 1.0)
+
+    def release(self) -> None:
+        """Release programs and framebuffers."""
+        owned: list[Any] = [*self._surfaces.values(), *self._arrays, *self._programs]
+        for item in owned:
+            item.release()
+        self._surfaces.clear()
+
+    def _draw(self, which: int, target: moderngl.Texture, source: moderngl.Texture, **values: Any) -> None:
+        surface = self._surface(target)
+        surface.use()
+        surface.viewport = (0, 0, *target.size)
+        self.ctx.clear_samplers(0, 1)
+        source.use(0)
+        program = self._programs[which]
+        for name, value in {"source": 0, **values}.items():
+            program[name].value = value  # type: ignore[union-attr]
+        self._arrays[which].render(self.ctx.TRIANGLES, vertices=3)
+
+    def _surface(self, target: moderngl.Texture) -> moderngl.Framebuffer:
+        if target.glo not in self._surfaces:
+            self._surfaces[target.glo] = make_framebuffer(self.ctx, [target])
+        return self._surfaces[target.glo]
+
+
+# ── sun and sky ────────────────────────────────────────────────────────────────
+
+
+Three = tuple[float, float, float]
+
+
+class Daylight(NamedTuple):
+    """Sun and sky at one time of day."""
+
+    to_sun: Three = (0.0, 0.0, 1.0)
+    sun: Three = (0.0, 0.0, 0.0)  # its light on what faces it; none where it is below the horizon
+    sky: Three = (0.0, 0.0, 0.0)  # the sky's on open level ground
+    day: float = 0.0  # of the year, from the first of January
+
+
+def daylight_of(texels: NDArray[np.float32]) -> Daylight:
+    """Return what the texels of a daylight say (rows, columns, 4); few have but the sun's place."""
+    row = texels[0, :, :].astype(float)
+    to_sun = _three(row[0])
+    if len(row) < 6:
+        return Daylight(to_sun)
+    sun = _three(row[1]) if to_sun[2] > 0 else (0.0, 0.0, 0.0)
+    return Daylight(to_sun, sun, _three(row[2]), float(row[5, 3]))
+
+
+def _three(texel: NDArray[np.float64]) -> Three:
+    return float(texel[0]), float(texel[1]), float(texel[2])
+
+
+# ── trees ──────────────────────────────────────────────────────────────────────
+
+
+BLOCK = 32  # [cells] a side
+
+
+@dataclass(frozen=True)
+class Grove:
+    """The trees of one part."""
+
+    trees: NDArray[np.float32]  # (n, 7): east and north in the part, up [m], how tall [m]; rank, density, sun
+    places: NDArray[np.float64]  # (n,): the number of its block, and its rank
+    low: NDArray[np.float64]  # (blocks, 3): the corners of a block's feet, from the part's corner [m]
+    high: NDArray[np.float64]
+
+    @property
+    def blocks(self) -> int:
+        """How many blocks have trees, or could."""
+        return len(self.low)
+
+    def first_of(self, blocks: NDArray[np.intp], shares: NDArray[np.float64]) -> NDArray[np.intp]:
+        """Return the numbers of the trees that have ranks below so much in some blocks, in their order."""
+        starts = np.searchsorted(self.places, blocks)
+        counts = np.searchsorted(self.places, blocks + np.minimum(shares, 0.999999)) - starts
+        before = np.cumsum(counts) - counts
+        indices: NDArray[np.intp] = np.repeat(starts - before, counts) + np.arange(counts.sum())
+        return indices
+
+
+class Planter:
+    """Makes the trees of parts from their heights and densities."""
+
+    def __init__(self, ctx: moderngl.Context, plot: Plot) -> None:
+        assert plot.trees is not None
+        self.ctx = ctx
+        self.plot = plot
+        self.cells, self.side = cells_of(plot)
+        self._program = screen_program(ctx, "part_trees")
+        self._array = ctx.vertex_array(self._program, [])
+        self._textures = [make_texture(ctx, (self.cells, self.cells), "rgba32f") for _ in range(2)]
+        self._surface = make_framebuffer(ctx, self._textures)
+
+    def plant(self, part: PartName, heights: moderngl.Texture, woods: moderngl.Texture) -> Grove:
+        """Return the trees of a part."""
+        plot, trees = self.plot, self.plot.trees
+        assert trees is not None
+        self._surface.use()
+        self._surface.viewport = (0, 0, self.cells, self.cells)
+        self.ctx.enable_only(0)
+        self.ctx.clear_samplers(0, 2)
+        heights.use(0)
+        woods.use(1)
+        sea = plot.view.sea_level - plot.base if plot.view.sea else -1e9
+        first = tuple(_wrapped(number * self.cells) for number in part)
+        values: dict[str, Any] = {"heights": 0, "woods": 1, "first": first, "side": self.side, "lowest": sea}
+        values |= {"width": plot.width, "relief": plot.relief, "seed": int(trees["seed"])}
+        values |= {name: trees[name] for name in ("tallest", "shortest")}
+        for name, value in values.items():
+            self._program[name].value = value  # type: ignore[union-attr]
+        self._array.render(self.ctx.TRIANGLES, vertices=3)
+        tree, own = (read_texture(texture) for texture in self._textures)
+        return _sorted(tree, own, self.side)
+
+    def release(self) -> None:
+        """Release program, textures and framebuffer."""
+        owned: list[Any] = [self._surface, self._array, self._program, *self._textures]
+        for item in owned:
+            item.release()
+
+
+def cells_of(plot: Plot) -> tuple[int, float]:
+    """Return how many cells a part is wide, a whole number so that they fit, and how wide a cell is [m]."""
+    assert plot.trees is not None
+    cells = max(round(plot.width / plot.trees["cell"]), 1)
+    return cells, plot.width / cells
+
+
+def _wrapped(number: int) -> int:
+    """Return a number as 32 bits have it."""
+    return (number + 2**31) % 2**32 - 2**31
+
+
+def _sorted(tree: NDArray[np.float32], own: NDArray[np.float32], side: float) -> Grove:
+    rows, columns = np.nonzero(tree[..., 3] > 0)
+    across = -(-tree.shape[1] // BLOCK)
+    block = rows // BLOCK * across + columns // BLOCK
+    trees = np.concatenate([tree[rows, columns], own[rows, columns, :3]], axis=1)
+    places = block + np.minimum(trees[:, 4].astype(np.float64), 0.999999)
+    order = np.argsort(places)
+    trees, places, block = trees[order], places[order], block[order]
+    blocks = across * (-(-tree.shape[0] // BLOCK))
+    west, south = np.arange(blocks) % across, np.arange(blocks) // across
+    low = np.stack([west, south, np.zeros(blocks)], axis=1) * (BLOCK * side)
+    high = low + BLOCK * side
+    ups, downs = np.full(blocks, -np.inf), np.full(blocks, np.inf)
+    np.maximum.at(ups, block, trees[:, 2])
+    np.minimum.at(downs, block, trees[:, 2])
+    # Of a block without trees nothing is taken.
+    low[:, 2], high[:, 2] = (np.where(np.isfinite(up), up, 0.0) for up in (downs, ups))
+    return Grove(trees, places, low, high)

@@ -8,34 +8,41 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from types import TracebackType
 from typing import Any
 
-from imgui_bundle import imgui
-
-# isort: split
 import glfw
+from imgui_bundle import ImVec2, imgui
 
+from playground.allowed_files import Signature, noting_places
 from playground.engine.context import context_info, prefer_software
 from playground.engine.engine import Engine
-from playground.engine.sandbox import Sandbox
-from playground.errors import DataError
-from playground.flight.controls import Wheel, by_gamepad, by_keys, by_mouse, together
-from playground.flight.craft import STEP, Controls
+from playground.engine.sandbox import Sandbox, TrySketch
+from playground.errors import DataError, PlaygroundError, counted
+from playground.flight.craft import STEP, Controls, Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
-from playground.flight.instruments import Instruments
 from playground.flight.record import Header, Moment, Record, Recorder
-from playground.flight.reload import SaveFollower
+from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.studio.draw import ctrl_held, letters
+from playground.studio.draw import plate
 from playground.studio.interface import remembered_size
 from playground.studio.keys import pressed_sign
 from playground.studio.picture.full_screen import Painter
+from playground.studio.reload.dependencies import watched
+from playground.studio.reload.stages import Sandbox as Stage
+from playground.studio.reload.stages import explained, refusal
+from playground.studio.reload.watcher import Watcher
 from playground.studio.status import add_line, status_file
+from playground.studio.theme import ALARM, DIM, INK, WARM, Rgb, Theme, packed
 from playground.studio.window import Window, wake
+
+# isort: split
+
 
 MAKING = 0.005  # [s] of each picture for parts
 OPENING = 0.05  # [s] between pictures before the first step
@@ -346,3 +353,223 @@ _PAD = {4: "earlier", 5: "later", 6: "reset", 7: "pause"}
 def _pressed() -> set[str]:
     pressed = {name for key, name in _PRESSES.items() if imgui.is_key_pressed(key, repeat=False)}
     return pressed | ({"help"} if "?" in letters() else set())  # its key depends on the keyboard
+
+
+# ── instruments ────────────────────────────────────────────────────────────────
+
+
+_MARGIN, _PADDING = 14.0, 8.0
+_ERRORS = 6  # lines of what is wrong that are shown
+_WINDS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
+
+HELP: tuple[tuple[str, str], ...] = (
+    ("S or Down,  W or Up", "nose up, nose down"),
+    ("A or Left,  D or Right", "bank left, bank right"),
+    ("Q,  E", "turn left, turn right"),
+    ("Shift,  Ctrl", "faster, slower (also Page Up, Page Down)"),
+    ("mouse, left button held", "the stick; the wheel is the throttle"),
+    ("gamepad", "left stick, right stick to turn, triggers for speed"),
+    ("[,  ]", "half an hour earlier, later (gamepad: bumpers)"),
+    ("P or Space", "pause (gamepad: Start)"),
+    ("R", "back to the start (gamepad: Back)"),
+    ("?", "this help (also F1)"),
+    ("Ctrl +,  Ctrl -,  Ctrl 0", "text larger, smaller, at its first size"),
+    ("Esc", "close this help; pause"),
+    ("Ctrl+Q", "quit, while it is paused"),
+)
+
+
+class Instruments:
+    """Text over the picture, drawn by imgui."""
+
+    def __init__(self, *, recording: bool, replaying: bool) -> None:
+        self.help = False
+        self.recording = recording
+        self.replaying = replaying
+        self.ended = False  # a replay has come to its end
+        self.trouble = ""  # why nothing is recorded any more
+        self.error: PlaygroundError | None = None  # of what was saved
+        self.changing = False  # what was saved is being made
+
+    def draw(self, flight: Flight, theme: Theme, *, ready: bool, paused: bool) -> None:
+        """Draw everything for this frame."""
+        room = imgui.get_main_viewport().size
+        if not ready:
+            there = len(flight.parts.visible) - flight.parts.missing
+            text = f"making the terrain: {there} of {len(flight.parts.visible)} parts"
+            _plate(text, theme, (room.x / 2, room.y / 2), align=(0.5, 0.5))
+            return
+        low = room.y - _MARGIN
+        _plate(self._values(flight), theme, (_MARGIN, low), align=(0.0, 1.0))
+        state = "   ".join([*(label for label, on in self._states(paused) if on), "?  help"])
+        ink = ALARM if state.startswith("end") else INK
+        _plate(state, theme, (room.x - _MARGIN, low), align=(1.0, 1.0), ink=ink)
+        if self.error is not None:
+            self._draw_error(self.error, theme, room)
+        elif self.changing:
+            _plate("taking in what was saved", theme, (room.x / 2, _MARGIN), align=(0.5, 0.5))
+        if self.help:
+            self._draw_help(theme, room)
+
+    def _states(self, paused: bool) -> tuple[tuple[str, bool], ...]:
+        return (
+            (self.trouble, bool(self.trouble)),
+            ("recording", self.recording),
+            ("end of the replay: Ctrl+Q quits", self.ended),
+            ("replay", self.replaying and not self.ended),
+            ("paused: P flies on, Ctrl+Q quits", paused and not self.ended),
+        )
+
+    def _values(self, flight: Flight) -> str:
+        craft = flight.craft
+        degrees = round(math.degrees(craft.heading)) % 360
+        wind = _WINDS[round(degrees / 45) % 8]
+        lines = [
+            f"{craft.speed * 3.6:4.0f} km/h   throttle {craft.throttle * 100:3.0f} %",
+            f"{flight.above_ground:4.0f} m over ground   {flight.above_sea:4.0f} m over sea",
+            f"heading {degrees:03d}° {wind}",
+        ]
+        if flight.plot.hour:
+            lines[-1] += f"   {clock(flight.hour)}"
+        return "\n".join(lines)
+
+    def _draw_error(self, error: PlaygroundError, theme: Theme, room: ImVec2) -> None:
+        """Write the first lines of a save's error along the upper edge."""
+        lines = str(error).split("\n")
+        more = f"\n… and {counted(len(lines) - _ERRORS, 'more line')}" if len(lines) > _ERRORS else ""
+        text = "\n".join(lines[:_ERRORS]) + more + "\nthe last good save is flown over"
+        wide = max(room.x - 2 * (_MARGIN + _PADDING), 80.0)
+        _plate(text, theme, (_MARGIN, _MARGIN), ink=ALARM, alpha=0.85, wrap=wide)
+
+    def _draw_help(self, theme: Theme, room: ImVec2) -> None:
+        with theme.font(theme.text):
+            line, pad, gap = imgui.get_text_line_height() * 1.45, 18.0, 24.0
+            keys = max(imgui.calc_text_size(k).x for k, _ in HELP)
+            wide = keys + gap + max(imgui.calc_text_size(m).x for _, m in HELP) + 2 * pad
+            high = line * len(HELP) + 2 * pad
+            left, top = max((room.x - wide) / 2, 0.0), max((room.y - high) / 2, 0.0)
+            over = imgui.get_foreground_draw_list()
+            corner = ImVec2(left + wide, top + high)
+            over.add_rect_filled(ImVec2(left, top), corner, packed((0.06, 0.07, 0.08), 0.88), 8.0)
+            for number, (key, meaning) in enumerate(HELP):
+                y = top + pad + number * line
+                over.add_text(ImVec2(left + pad, y), packed(WARM), key)
+                over.add_text(ImVec2(left + pad + keys + gap, y), packed(INK if meaning else DIM), meaning)
+
+
+def _plate(
+    text: str,
+    theme: Theme,
+    corner: tuple[float, float],
+    *,
+    align: tuple[float, float] = (0.0, 0.0),
+    ink: Rgb = INK,
+    alpha: float = 0.55,
+    wrap: float = -1.0,
+) -> None:
+    """Write text on a dark plate, as ``draw.plate`` places it."""
+    with theme.font(theme.code):
+        plate(
+            imgui.get_foreground_draw_list(),
+            text,
+            corner,
+            ink=packed(ink),
+            ground=packed((0.04, 0.05, 0.06), alpha),
+            padding=_PADDING,
+            rounding=6.0,
+            wrap=wrap,
+            align=align,
+        )
+
+
+def clock(hour: float) -> str:
+    """Return a time of day as a clock shows it."""
+    minutes = round(hour * 60) % (24 * 60)
+    return f"{minutes // 60:02d}:{minutes % 60:02d}"
+
+
+# ── what was saved ─────────────────────────────────────────────────────────────
+
+
+class SaveFollower:
+    """One sketch's; use it with ``with``.
+
+    ``values`` are set over what its files say, ``shown`` is the sketch that is flown over,
+    ``wake`` is called from another thread when something was saved.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        shown: Sketch,
+        values: Mapping[str, object],
+        sandbox: Stage,
+        driver: str,
+        wake: Callable[[], None],
+    ) -> None:
+        self.error: PlaygroundError | None = None
+        self._path = path
+        self._shown = shown
+        self._values = dict(values)
+        self._sandbox = sandbox
+        self._driver = driver
+        self._checked: Sketch | None = None  # waits for the sandbox's answer
+        self._watcher = Watcher(wake)
+        self._places: Mapping[Path, Signature | None] = {}
+        self._follow(time.time())
+
+    def __enter__(self) -> SaveFollower:
+        self._watcher.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._watcher.stop()
+
+    @property
+    def waits(self) -> bool:
+        """Whether an answer of the sandbox is awaited."""
+        return self._checked is not None
+
+    def update(self) -> Sketch | None:
+        """Take in what was saved; return a sketch that has proved good and is another than the one shown."""
+        if self._watcher.take():
+            self._read()
+        if self._checked is None:
+            return None
+        report = self._sandbox.poll()
+        if report is None:
+            return None
+        good, self._checked, self.error = self._checked, None, refusal(report)
+        if self.error is not None:
+            self._follow(time.time())
+            return None
+        self._shown = good
+        return good
+
+    def refuse(self, error: Exception) -> None:
+        """Say that the sketch returned last cannot be flown over after all."""
+        self.error = explained(error, self._path)
+
+    def _read(self) -> None:
+        read_at = time.time()
+        self._checked = None
+        try:
+            with noting_places() as self._places:
+                sketch = load(self._path).plainly(self._shown.plain).with_values(self._values)
+        except Exception as error:
+            self.error = explained(error, self._path)
+        else:
+            # One that was refused is tried again: what it depends on may have changed.
+            if sketch == self._shown and self.error is None:
+                return
+            self._checked = sketch
+            self._sandbox.submit(TrySketch(sketch, drivers=(self._driver,)))
+        self._follow(read_at)
+
+    def _follow(self, read_at: float) -> None:
+        sketches = [sketch for sketch in (self._shown, self._checked) if sketch is not None]
+        errors = [self.error] if self.error is not None else []
+        files = watched(self._path, sketches, errors, self._places)
+        self._watcher.follow(files, read_at=read_at, read=self._places)

@@ -15,11 +15,9 @@ from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
 from playground.engine.textures import make_framebuffer, make_texture, read_texture
-from playground.flight.daylight import Daylight
-from playground.flight.groves import Grove, Planter, cells_of
+from playground.flight.craft import Lens
 from playground.flight.layout import PartName, Plot
-from playground.flight.lens import Lens
-from playground.flight.parts import Parts
+from playground.flight.parts import Daylight, Grove, Parts, Planter, cells_of
 from playground.flight.programs import screen_program, trees_program
 
 if TYPE_CHECKING:

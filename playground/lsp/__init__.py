@@ -1,15 +1,13 @@
-"""A language server for kernels and sketches: what an editor shows while one types.
+"""A language server: what an editor shows in kernels and sketches while one types.
 
-    server.py       the messages of the protocol, and who answers each
-    documents.py    the open texts, saved or not, and positions in them
-    checking.py     diagnostics: ``check_file`` on unsaved texts, in the sandbox, stale work given up
-    shader.py       what a shader's text names, and where: its includes, parameters, functions
-    sketch_text.py  what a place in a sketch's TOML is: which table, which key, which technique
-    complete.py     completion; ``complete_toml.py`` that of sketches
-    explain.py      hover, go to definition, symbols
+    server.py       the messages of the protocol, and the answer of each
+    documents.py    open texts, saved or not; diagnostics by ``check_file`` in the sandbox
+    shader.py       the names in a shader's text; ``sketch_text.py`` those in a sketch's TOML
+    complete.py     completion
+    explain.py      hover, definitions, symbols, colour boxes; ``describe.py`` writes them as Markdown
     rename.py       rename, where it is safe
-    colours.py      colour boxes
 
-What is said comes from the homes that ``check``, the documentation and the engine use; only what the
-protocol asks for is made here. pygls, an extra, is imported by ``server`` alone.
+Facts come from where ``check``, the documentation and the engine have them. Needs the core, ``verify`` for
+``check_file``, and pygls (extra ``lsp``), which ``server`` alone imports. To delete it: this folder,
+tests/lsp and its line in rooms.py.
 """

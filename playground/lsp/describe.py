@@ -8,6 +8,7 @@ from playground.commands.entries import Choice
 from playground.paths import shown
 from playground.shader.outline import Declared
 from playground.shader.parameter import expected, write
+from playground.shader.widgets import WIDGETS
 from playground.sketch.model import Kernel, Parameter, Technique
 from playground.sketch.wiring import input_names, output_names
 
@@ -37,6 +38,13 @@ def parameter(item: Parameter) -> str:
         f"*{shown(item.file)}:{item.line}*" if item.file else "",
     ]
     return "\n\n".join(filter(None, parts))
+
+
+def widget(name: str) -> str:
+    """Return what a widget is: what it takes in brackets, what it is for, the types that may have it."""
+    kind = WIDGETS[name]
+    types = ", ".join(f"`{glsl_type}`" for glsl_type in kind.types)
+    return f"{code(f'//! {name}')}\n\n{kind.about}\n\nin brackets: {kind.takes or 'nothing'}; for {types}"
 
 
 def technique(use: str, item: Technique) -> str:

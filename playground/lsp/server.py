@@ -23,11 +23,9 @@ from pygls.lsp.server import LanguageServer
 
 from playground._version import __version__
 from playground.errors import Diagnostic, PlaygroundError
-from playground.lsp import colours, explain
-from playground.lsp.checking import Checker
-from playground.lsp.complete import complete_shader
-from playground.lsp.complete_toml import complete_sketch
-from playground.lsp.documents import Document, Documents, Text
+from playground.lsp import explain
+from playground.lsp.complete import complete_shader, complete_sketch
+from playground.lsp.documents import Checker, Document, Documents, Text
 from playground.lsp.rename import Refused, prepare, rename
 from playground.lsp.shader import library_declared
 from playground.shader.outline import WORD
@@ -286,7 +284,7 @@ def _colours(server: Server, params: types.DocumentColorParams) -> list[types.Co
     document = server.documents.get(params.text_document.uri)
     if document is None or not document.is_ours:
         return []
-    of = colours.colours_of_sketch if document.is_toml else colours.colours_of_shader
+    of = explain.colours_of_sketch if document.is_toml else explain.colours_of_shader
     return of(document, server.documents)
 
 
@@ -294,7 +292,7 @@ def _presentations(server: Server, params: types.ColorPresentationParams) -> lis
     document = server.documents.get(params.text_document.uri)
     if document is None or not document.is_ours:
         return []
-    present = colours.present_in_sketch if document.is_toml else colours.present_in_shader
+    present = explain.present_in_sketch if document.is_toml else explain.present_in_shader
     return present(document, server.documents, params.range, params.color)
 
 

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from playground.flight.controls import (
+from playground.flight.craft import (
     FULL,
     NOTCH,
     REST,
+    Controls,
     Wheel,
     by_gamepad,
     by_keys,
     by_mouse,
     together,
 )
-from playground.flight.craft import Controls
-from playground.flight.instruments import HELP, clock
+from playground.flight.window import HELP, clock
 
 
 def test_keys_command_full_deflection_and_opposites_cancel():

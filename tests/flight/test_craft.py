@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from playground.flight import craft as model
-from playground.flight.craft import CLEARANCE, STEP, Controls, Craft, stepped
-from playground.flight.lens import axes, through
+from playground.flight.craft import CLEARANCE, STEP, Controls, Craft, axes, stepped, through
 
 
 def flown(craft, controls, seconds, ground=lambda east, north: -1e9):

@@ -15,8 +15,7 @@ from playground.engine.engine import Engine
 from playground.engine.textures import read_picture
 from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
-from playground.flight.flight import Flight
-from playground.flight.frames import count_frames, fly_again, write_frames
+from playground.flight.flight import Flight, count_frames, fly_again, write_frames
 from playground.flight.record import Header, Moment, Record, Recorder, read_record
 from playground.flight.scene import visibility_range
 
@@ -206,7 +205,7 @@ def flight(small_engine, terrain_of):
 
 def rows_below_horizon(flight, size):
     """Return, for each pixel, how far the ray through it goes to height 0 [m]; inf above the horizon."""
-    from playground.flight.lens import through
+    from playground.flight.craft import through
 
     lens = through(flight.craft, size, 50_000.0)
     x, y = np.meshgrid(

@@ -13,8 +13,7 @@ import pytest
 
 from playground.data.image_files import read_png
 from playground.engine.engine import Engine
-from playground.flight.flight import CACHE_BYTES
-from playground.flight.frames import fly_again
+from playground.flight.flight import CACHE_BYTES, fly_again
 from playground.flight.record import read_record
 from playground.verify.shots.compare import compare
 

@@ -10,7 +10,7 @@ import pytest
 
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ShaderError
-from playground.flight.reload import SaveFollower
+from playground.flight.window import SaveFollower
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
 

@@ -16,9 +16,8 @@ from playground.engine.textures import read_picture
 from playground.errors import SketchError
 from playground.flight import programs
 from playground.flight.flight import Flight
-from playground.flight.groves import Planter, cells_of
 from playground.flight.layout import plot_of
-from playground.flight.parts import Parts
+from playground.flight.parts import Parts, Planter, cells_of
 
 from ..loading import load
 

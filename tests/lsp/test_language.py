@@ -115,6 +115,7 @@ def test_a_comment_is_not_completed(editor: Editor, folder: Path) -> None:
         ("tint.x", "Tint of the hill"),
         ("far)", "float far = length"),
         ('shade.glsl"', "How a value is shaded"),
+        ("slider(", "the range is enforced"),
     ],
 )
 def test_hover_says_what_a_name_is(editor: Editor, folder: Path, word: str, expected: str) -> None:

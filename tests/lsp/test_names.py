@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from playground.lsp.names import locals_of, words
+from playground.lsp.shader import locals_of, words
 from playground.shader.outline import code_of, outline
 
 TEXT = """// A file. float no(int comment);
