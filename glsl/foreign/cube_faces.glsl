@@ -4,7 +4,7 @@
 //   needs    colour/encode.glsl; six image files, PNG, JPEG or WebP
 //   units    none; +X is right, +Y top, +Z front
 //   source   made here
-//   tested   tests/dialects/test_toys.py, against the files' own colours
+//   tested   tests/dialects/test_shadertoy.py, against the files' own colours
 //
 // A file's upper row is the face's first, as cube maps are stored. Each is stretched over its
 // face.
