@@ -137,8 +137,10 @@ def test_pictures_leave_no_objects(any_engine: Engine, keyed, alive: Counter[str
 
 # ── what is in the file ──────────────────────────────────────────────────────
 
+SMALL = (64, 36)
 
-def ramps(count: int, size=(128, 72)) -> list[np.ndarray]:
+
+def ramps(count: int, size=SMALL) -> list[np.ndarray]:
     width, height = size
     arrays = []
     for number in range(count):
@@ -150,12 +152,30 @@ def ramps(count: int, size=(128, 72)) -> list[np.ndarray]:
     return arrays
 
 
+def encode(
+    path: Path, arrays, fps=Fraction(10), count: int = 0, error: BaseException | None = None, **more
+) -> Video:
+    """Write pictures as a film of ``count``, or raise an error after the last."""
+    with Video(path, arrays[0].shape[1::-1] if arrays else SMALL, fps, count or len(arrays), **more) as video:
+        for picture in arrays:
+            video.add(picture)
+        if error is not None:
+            raise error
+    return video
+
+
+def interrupted(path: Path, arrays, **more) -> Path | None:
+    """Interrupt a film of five pictures, and return the shorter one."""
+    with pytest.raises(Stopped) as caught:
+        encode(path, arrays, count=5, error=KeyboardInterrupt(), **more)
+    assert caught.value.count == len(arrays)
+    return caught.value.path
+
+
 @pytest.mark.parametrize(("ending", "worst"), [(".mp4", 2.0), (".webm", 2.0), (".gif", 12.0)])
 def test_colours_come_back(tmp_path: Path, ending: str, worst: float):
-    path, pictures = tmp_path / f"film{ending}", ramps(6)
-    with Video(path, (128, 72), Fraction(20), 6) as video:
-        for picture in pictures:
-            video.add(picture)
+    path, pictures = tmp_path / f"film{ending}", ramps(6, (128, 72))
+    encode(path, pictures, Fraction(20))
     array = decoded(path)
     assert array.shape == (6, 72, 128, 3)
     error = np.abs(array.astype(int) - np.stack(pictures)[..., :3])
@@ -170,9 +190,7 @@ def test_colours_come_back(tmp_path: Path, ending: str, worst: float):
 @pytest.mark.parametrize("ending", [".mp4", ".webm"])
 def test_the_file_says_what_its_colours_mean(tmp_path: Path, ending: str):
     path = tmp_path / f"film{ending}"
-    with Video(path, (64, 36), Fraction(30000, 1001), 3) as video:
-        for picture in ramps(3, (64, 36)):
-            video.add(picture)
+    encode(path, ramps(3), Fraction(30000, 1001))
     with av.open(str(path)) as container:
         context = container.streams.video[0].codec_context
         marks = context.color_primaries, context.color_trc, context.colorspace, context.color_range
@@ -186,9 +204,7 @@ def test_better_quality_is_nearer_and_larger(tmp_path: Path):
     sizes, errors = [], []
     for quality in QUALITIES:
         path = tmp_path / f"{quality}.mp4"
-        with Video(path, (128, 72), Fraction(10), 2, quality=quality) as video:
-            video.add(picture)
-            video.add(picture)
+        encode(path, [picture, picture], quality=quality)
         sizes.append(path.stat().st_size)
         errors.append(np.abs(decoded(path).astype(int) - picture[..., :3]).mean())
     assert sizes == sorted(sizes) and errors == sorted(errors, reverse=True) and sizes[0] < sizes[-1]
@@ -217,8 +233,8 @@ def test_an_interrupted_video_is_a_shorter_one(any_engine: Engine, keyed, tmp_pa
 
 
 def test_interrupted_video_counts_frame_already_encoded(tmp_path: Path):
-    with pytest.raises(Stopped) as caught, Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video:
-        for picture in ramps(3, (64, 36)):
+    with pytest.raises(Stopped) as caught, Video(tmp_path / "a.mp4", SMALL, Fraction(10), 5) as video:
+        for picture in ramps(3):
             video.add(picture)
         video.added -= 1  # Ctrl-C came between the two
         raise KeyboardInterrupt
@@ -227,27 +243,18 @@ def test_interrupted_video_counts_frame_already_encoded(tmp_path: Path):
 
 
 def test_nothing_is_left_of_a_video_that_fails(tmp_path: Path):
-    with pytest.raises(Stopped) as caught, Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5):
-        raise KeyboardInterrupt
-    assert caught.value.path is None
-    with pytest.raises(ZeroDivisionError), Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video:
-        video.add(ramps(1, (64, 36))[0])
-        raise ZeroDivisionError
-    with (
-        pytest.raises(DataError, match="no picture was drawn, of 5"),
-        Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video,
-    ):
-        pass
+    assert interrupted(tmp_path / "a.mp4", []) is None
+    with pytest.raises(ZeroDivisionError):
+        encode(tmp_path / "a.mp4", ramps(1), count=5, error=ZeroDivisionError())
+    with pytest.raises(DataError, match="no picture was drawn, of 5"):
+        encode(tmp_path / "a.mp4", [], count=5)
     assert not list(tmp_path.iterdir())
 
 
 def test_a_video_of_too_few_pictures_gets_a_name_that_says_so(tmp_path: Path):
     (tmp_path / "a.mp4").write_bytes(b"what was there")
-    with (
-        pytest.raises(DataError, match=r"wrote 1 pictures .* kept in a-first-1\.mp4"),
-        Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video,
-    ):
-        video.add(ramps(1, (64, 36))[0])
+    with pytest.raises(DataError, match=r"wrote 1 pictures .* kept in a-first-1\.mp4"):
+        encode(tmp_path / "a.mp4", ramps(1), count=5)
     assert decoded(tmp_path / "a-first-1.mp4").shape == (1, 36, 64, 3)
     assert (tmp_path / "a.mp4").read_bytes() == b"what was there"
     assert len(list(tmp_path.iterdir())) == 2
@@ -271,19 +278,17 @@ def test_a_film_that_cannot_be_read_back_is_not_lost(
     assert len(messages) == 1 and "was written, but could not be checked" in messages[0]
     assert [path.name for path in tmp_path.glob("*film*")] == ["film.mp4"]
     # Interrupted as well: then by the number of pictures that were handed over.
-    with pytest.raises(Stopped) as caught, Video(tmp_path / "b.mp4", (64, 36), Fraction(10), 5) as video:
-        video.add(ramps(1, (64, 36))[0])
-        raise KeyboardInterrupt
-    assert caught.value.path == tmp_path / "b-first-1.mp4" and caught.value.path.is_file()
+    shorter = interrupted(tmp_path / "b.mp4", ramps(1))
+    assert shorter == tmp_path / "b-first-1.mp4" and shorter.is_file()
 
 
 def test_ctrl_c_while_a_film_is_read_back_does_not_lose_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    def interrupted(path: Path) -> tuple[int, Fraction]:
+    def stopped(path: Path) -> tuple[int, Fraction]:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(video_module, "count_pictures", interrupted)
-    with pytest.raises(Stopped) as caught, Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 1) as video:
-        video.add(ramps(1, (64, 36))[0])
+    monkeypatch.setattr(video_module, "count_pictures", stopped)
+    with pytest.raises(Stopped) as caught:
+        encode(tmp_path / "a.mp4", ramps(1))
     assert caught.value.path == tmp_path / "a-first-1.mp4" and caught.value.path.is_file()
 
 
@@ -326,13 +331,9 @@ def test_the_program_writes_the_film_that_pyav_writes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ending: str, fps: Fraction, most: int, count: int
 ):
     """VP9's decoded pictures may differ between versions of libvpx; H.264 of x264 and a GIF's do not."""
-    pictures = ramps(count, (64, 36))
     paths = [tmp_path / f"{name}.{ending}" for name in ("pyav", "program")]
     for path in paths:
-        with Video(path, (64, 36), fps, count) as video:
-            for picture in pictures:
-                video.add(picture)
-        assert not video.warning
+        assert not encode(path, ramps(count), fps).warning
         monkeypatch.setitem(sys.modules, "av", None)
     assert count_pictures(paths[0]) == count_pictures(paths[1]) == (count, fps)
     monkeypatch.setitem(sys.modules, "av", av)
@@ -349,14 +350,9 @@ def test_a_film_of_the_program_that_is_interrupted_is_shorter(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setitem(sys.modules, "av", None)
-    with pytest.raises(Stopped) as caught, Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video:
-        for picture in ramps(3, (64, 36)):
-            video.add(picture)
-        raise KeyboardInterrupt
-    assert caught.value.path == tmp_path / "a-first-3.mp4"
-    with pytest.raises(ZeroDivisionError), Video(tmp_path / "b.mp4", (64, 36), Fraction(10), 5) as video:
-        video.add(ramps(1, (64, 36))[0])
-        raise ZeroDivisionError
+    assert interrupted(tmp_path / "a.mp4", ramps(3)) == tmp_path / "a-first-3.mp4"
+    with pytest.raises(ZeroDivisionError):
+        encode(tmp_path / "b.mp4", ramps(1), count=5, error=ZeroDivisionError())
     assert [path.name for path in tmp_path.iterdir()] == ["a-first-3.mp4"]
 
 
@@ -367,12 +363,8 @@ def test_why_the_program_failed_is_in_the_message(tmp_path: Path, monkeypatch: p
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin" / "ffmpeg").write_text("#!/bin/sh\necho \"Unknown encoder 'libx264'\" >&2\nexit 1\n")
     (tmp_path / "bin" / "ffmpeg").chmod(0o755)
-    with (
-        pytest.raises(DataError, match=r"a\.mp4.*cannot be written: ffmpeg: Unknown encoder 'libx264'"),
-        Video(tmp_path / "a.mp4", (640, 360), Fraction(30), 9) as video,
-    ):
-        for picture in ramps(9, (640, 360)):
-            video.add(picture)
+    with pytest.raises(DataError, match=r"a\.mp4.*cannot be written: ffmpeg: Unknown encoder 'libx264'"):
+        encode(tmp_path / "a.mp4", ramps(9, (640, 360)), Fraction(30))
     assert [path.name for path in tmp_path.iterdir()] == ["bin"]
 
 

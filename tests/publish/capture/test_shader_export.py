@@ -129,38 +129,34 @@ def toy_of(ctx: moderngl.Context, path: Path, time: float = 0.0) -> NDArray[np.u
 ROUNDING = 1
 
 
+def check_again(
+    engine: Engine, sketch: Path, path: Path, *, texture: str = "", time: float = 0.0, own: bool = False
+) -> NDArray[np.uint8]:
+    """Export a sketch, see that the file draws the same, and return its picture: by its host, or by us."""
+    done = export(sketch, path, texture=texture, engine=engine)
+    assert texture or "the terrain has as many texels as the picture has pixels" in done.warnings
+    if own:
+        again = engine.render(load(path), size=FRAME, time=time).array[::-1, :, :3]
+    elif path.suffix == ".fs":
+        again = isf_of(engine.ctx, path, time=time)
+    else:
+        again = toy_of(engine.ctx, path, time)
+    assert apart(drawn(engine, sketch, time=time, texture=texture), again) <= ROUNDING
+    return again
+
+
+@pytest.mark.parametrize("own", [False, pytest.param(True, marks=pytest.mark.room("dialects"))])
 @pytest.mark.parametrize("ending", ["fs", "json"])
 @pytest.mark.parametrize("name", ["chain", "alone", "lives", "water"])
 def test_a_picture_of_several_passes_is_drawn_the_same(
-    folder: Path, any_engine: Engine, ctx: moderngl.Context, ending: str, name: str
+    folder: Path, any_engine: Engine, ending: str, name: str, own: bool
 ) -> None:
-    path = folder / f"out.{ending}"
-    done = export(folder / f"{name}.toml", path, engine=any_engine)
-    assert "the terrain has as many texels as the picture has pixels" in done.warnings
-    again = isf_of(ctx, path, time=1.5) if ending == "fs" else toy_of(ctx, path, 1.5)
-    assert apart(drawn(any_engine, folder / f"{name}.toml", time=1.5), again) <= ROUNDING
+    check_again(any_engine, folder / f"{name}.toml", folder / f"again.{ending}", time=1.5, own=own)
 
 
 @pytest.mark.parametrize("ending", ["fs", "json", "frag"])
-def test_one_texture_is_a_picture(
-    folder: Path, any_engine: Engine, ctx: moderngl.Context, ending: str
-) -> None:
-    path = folder / f"out.{ending}"
-    export(folder / "chain.toml", path, texture="height", engine=any_engine)
-    again = isf_of(ctx, path) if ending == "fs" else toy_of(ctx, path)
-    assert apart(drawn(any_engine, folder / "chain.toml", texture="height"), again) <= ROUNDING
-
-
-@pytest.mark.parametrize("ending", ["fs", "json"])
-@pytest.mark.parametrize("name", ["chain", "alone", "lives", "water"])
-@pytest.mark.room("dialects")
-def test_several_passes_are_read_again_and_drawn_the_same(
-    folder: Path, any_engine: Engine, ending: str, name: str
-) -> None:
-    path = folder / f"again.{ending}"
-    export(folder / f"{name}.toml", path, engine=any_engine)
-    again = any_engine.render(load(path), size=FRAME, time=1.5).array[::-1, :, :3]
-    assert apart(drawn(any_engine, folder / f"{name}.toml", time=1.5), again) <= ROUNDING
+def test_one_texture_is_a_picture(folder: Path, any_engine: Engine, ending: str) -> None:
+    check_again(any_engine, folder / "chain.toml", folder / f"out.{ending}", texture="height")
 
 
 @pytest.mark.parametrize("ending", ["frag", "glsl"])
@@ -169,9 +165,7 @@ def test_a_text_of_one_pass_is_read_again_and_drawn_the_same(
     folder: Path, any_engine: Engine, ending: str
 ) -> None:
     path = folder / f"again.{ending}"
-    export(folder / "chain.toml", path, texture="height", engine=any_engine)
-    again = any_engine.render(load(path), size=FRAME, time=2.0).array[::-1, :, :3]
-    assert apart(drawn(any_engine, folder / "chain.toml", texture="height", time=2.0), again) <= ROUNDING
+    check_again(any_engine, folder / "chain.toml", path, texture="height", time=2.0, own=True)
 
 
 def test_a_file_of_its_own_keeps_its_sliders(folder: Path, any_engine: Engine) -> None:
@@ -330,16 +324,12 @@ def test_an_unwired_input_may_be_handed_to_a_function(folder: Path, any_engine: 
     (folder / "asked.glsl").write_text(ASKED)
     (folder / "a.toml").write_text(HEAD + passes(height="./land") + '[view]\nuse = "./asked"\n')
     path = folder / f"again.{ending}"
-    export(folder / "a.toml", path, engine=any_engine)
-    again = any_engine.render(load(path), size=FRAME).array[::-1, :, :3]
-    assert apart(drawn(any_engine, folder / "a.toml"), again) <= ROUNDING
+    check_again(any_engine, folder / "a.toml", path, own=True)
     (folder / "asked.glsl").write_text(
         ASKED.replace("wired_extra ? at(extra, texel) : 0.5", "at(extra, texel)")
     )
-    export(folder / "a.toml", path, engine=any_engine)
-    again = any_engine.render(load(path), size=FRAME).array[::-1, :, :3]
+    again = check_again(any_engine, folder / "a.toml", path, own=True)
     assert (again[..., 1] == 255).all(), "white, by a pass of its own"
-    assert apart(drawn(any_engine, folder / "a.toml"), again) <= ROUNDING
 
 
 REDUCED = """// reduced.glsl -- the mean of a texture, as one texel.
