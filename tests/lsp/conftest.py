@@ -77,3 +77,19 @@ def folder(editor: Editor) -> Iterator[Path]:
         editor.close(uri)
         del editor.versions[uri]
     written(editor.folder)
+
+
+@pytest.fixture
+def hill(editor: Editor, folder: Path) -> str:
+    """Open the kernel, and give its URI."""
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, KERNEL)
+    return uri
+
+
+@pytest.fixture
+def sketch(editor: Editor, folder: Path) -> str:
+    """Open the sketch, and give its URI."""
+    uri = (folder / "sketch.toml").as_uri()
+    editor.open(uri, SKETCH, "toml")
+    return uri

@@ -54,14 +54,12 @@ def applied(text: str, edits: list[dict[str, Any]]) -> str:
 
 
 @pytest.mark.slow
-def test_a_kernel_is_completed_with_all_that_it_may_name(editor: Editor, folder: Path) -> None:
-    uri = (folder / "hill.glsl").as_uri()
-    editor.open(uri, KERNEL)
-    names = completed(editor, uri, KERNEL.replace("    return", "    float more = |;\n    return"))
+def test_a_kernel_is_completed_with_all_that_it_may_name(editor: Editor, hill: str) -> None:
+    names = completed(editor, hill, KERNEL.replace("    return", "    float more = |;\n    return"))
     assert names >= {*GIVEN, "towards_sun", "previous"}, "given names"
     assert names >= {"rounds", "tint", "shape", "sun"}, "parameters"
     assert names >= {"far", "texel", "kept_of"}, "what the function and its include declare"
-    names = completed(editor, uri, KERNEL.replace("    return", "    float more = r|;\n    return"))
+    names = completed(editor, hill, KERNEL.replace("    return", "    float more = r|;\n    return"))
     assert names >= {name for name in library() if name.startswith("r")}
     assert "random" in names and "reflect" in names
 
@@ -91,19 +89,15 @@ def test_a_function_of_the_library_brings_its_include(editor: Editor, folder: Pa
     ],
 )
 def test_directives_and_annotations_are_completed(
-    editor: Editor, folder: Path, line: str, expected: set[str]
+    editor: Editor, hill: str, line: str, expected: set[str]
 ) -> None:
-    uri = (folder / "hill.glsl").as_uri()
-    editor.open(uri, KERNEL)
-    names = completed(editor, uri, f"// one line\n{line}\n{KERNEL}")
+    names = completed(editor, hill, f"// one line\n{line}\n{KERNEL}")
     assert names >= expected
     assert "relief" not in names, "names of code do not belong here"
 
 
-def test_a_comment_is_not_completed(editor: Editor, folder: Path) -> None:
-    uri = (folder / "hill.glsl").as_uri()
-    editor.open(uri, KERNEL)
-    assert completed(editor, uri, f"{KERNEL}\n// the rel|\n") == set()
+def test_a_comment_is_not_completed(editor: Editor, hill: str) -> None:
+    assert completed(editor, hill, f"{KERNEL}\n// the rel|\n") == set()
 
 
 @pytest.mark.parametrize(
@@ -118,10 +112,8 @@ def test_a_comment_is_not_completed(editor: Editor, folder: Path) -> None:
         ("slider(", "the range is enforced"),
     ],
 )
-def test_hover_says_what_a_name_is(editor: Editor, folder: Path, word: str, expected: str) -> None:
-    uri = (folder / "hill.glsl").as_uri()
-    editor.open(uri, KERNEL)
-    assert expected in editor.at("hover", uri, *place(KERNEL, word, 1))["contents"]["value"]
+def test_hover_says_what_a_name_is(editor: Editor, hill: str, word: str, expected: str) -> None:
+    assert expected in editor.at("hover", hill, *place(KERNEL, word, 1))["contents"]["value"]
 
 
 @pytest.mark.parametrize(
@@ -134,10 +126,8 @@ def test_hover_says_what_a_name_is(editor: Editor, folder: Path, word: str, expe
         ("far)", "hill.glsl", "float far"),
     ],
 )
-def test_go_to_definition(editor: Editor, folder: Path, word: str, file: str, line: str) -> None:
-    uri = (folder / "hill.glsl").as_uri()
-    editor.open(uri, KERNEL)
-    result = editor.at("definition", uri, *place(KERNEL, word, 1))
+def test_go_to_definition(editor: Editor, folder: Path, hill: str, word: str, file: str, line: str) -> None:
+    result = editor.at("definition", hill, *place(KERNEL, word, 1))
     assert result["uri"] == (folder / file).as_uri()
     text = (folder / file).read_text().split("\n")[result["range"]["start"]["line"]]
     assert line in text
@@ -193,10 +183,8 @@ def test_symbols_are_what_a_file_declares(editor: Editor, folder: Path) -> None:
         (SKETCH + '\n[[keyframe]]\ntime = 1\nease = "|"', {"smooth", "linear", "hold"}),
     ],
 )
-def test_a_sketch_is_completed(editor: Editor, folder: Path, text: str, expected: set[str]) -> None:
-    uri = (folder / "sketch.toml").as_uri()
-    editor.open(uri, SKETCH, "toml")
-    assert completed(editor, uri, text) >= expected
+def test_a_sketch_is_completed(editor: Editor, sketch: str, text: str, expected: set[str]) -> None:
+    assert completed(editor, sketch, text) >= expected
 
 
 @pytest.mark.parametrize(
@@ -209,20 +197,16 @@ def test_a_sketch_is_completed(editor: Editor, folder: Path, text: str, expected
         ('height.shape" =', "Form of the hill"),
     ],
 )
-def test_hover_in_a_sketch(editor: Editor, folder: Path, word: str, expected: str) -> None:
-    uri = (folder / "sketch.toml").as_uri()
-    editor.open(uri, SKETCH, "toml")
-    assert expected in editor.at("hover", uri, *place(SKETCH, word, 1))["contents"]["value"]
+def test_hover_in_a_sketch(editor: Editor, sketch: str, word: str, expected: str) -> None:
+    assert expected in editor.at("hover", sketch, *place(SKETCH, word, 1))["contents"]["value"]
 
 
-def test_go_to_what_a_sketch_names(editor: Editor, folder: Path) -> None:
-    uri = (folder / "sketch.toml").as_uri()
-    editor.open(uri, SKETCH, "toml")
+def test_go_to_what_a_sketch_names(editor: Editor, folder: Path, sketch: str) -> None:
     kernel = (folder / "hill.glsl").as_uri()
-    assert editor.at("definition", uri, *place(SKETCH, "./hill", 1))["uri"] == kernel
-    result = editor.at("definition", uri, *place(SKETCH, "rounds = 2", 1))
+    assert editor.at("definition", sketch, *place(SKETCH, "./hill", 1))["uri"] == kernel
+    result = editor.at("definition", sketch, *place(SKETCH, "rounds = 2", 1))
     assert (result["uri"], result["range"]["start"]["line"]) == (kernel, 4)
-    result = editor.at("definition", uri, *place(SKETCH, 'preset = "sharp"', 11))
+    result = editor.at("definition", sketch, *place(SKETCH, 'preset = "sharp"', 11))
     assert result["range"]["start"]["line"] == place(SKETCH, "[[preset]]")[0] + 1
 
 
@@ -450,10 +434,8 @@ def test_a_uniform_behind_a_pragma_with_slashes_has_a_symbol(editor: Editor, fol
 # ── colours ──────────────────────────────────────────────────────────────────
 
 
-def test_kernel_colours_are_shown_encoded_and_written_linear(editor: Editor, folder: Path) -> None:
-    uri = (folder / "hill.glsl").as_uri()
-    editor.open(uri, KERNEL)
-    (result,) = editor.ask("textDocument/documentColor", textDocument={"uri": uri})
+def test_kernel_colours_are_shown_encoded_and_written_linear(editor: Editor, hill: str) -> None:
+    (result,) = editor.ask("textDocument/documentColor", textDocument={"uri": hill})
     start, end = place(KERNEL, "vec3(0.2, 0.5, 1.0)"), place(KERNEL, "vec3(0.2, 0.5, 1.0)", 19)
     assert result["range"] == {
         "start": {"line": start[0], "character": start[1]},
@@ -463,7 +445,7 @@ def test_kernel_colours_are_shown_encoded_and_written_linear(editor: Editor, fol
     assert [result["color"][k] for k in ("red", "green", "blue")] == pytest.approx(encoded, abs=0.5 / 255)
     (shown,) = editor.ask(
         "textDocument/colorPresentation",
-        textDocument={"uri": uri},
+        textDocument={"uri": hill},
         range=result["range"],
         color={"red": 0.5, "green": 0.0, "blue": 1.0, "alpha": 1.0},
     )
@@ -472,14 +454,12 @@ def test_kernel_colours_are_shown_encoded_and_written_linear(editor: Editor, fol
     assert numbers == pytest.approx([((half + 0.055) / 1.055) ** 2.4, 0.0, 1.0], abs=1e-4)
 
 
-def test_colours_of_a_sketch(editor: Editor, folder: Path) -> None:
-    uri = (folder / "sketch.toml").as_uri()
-    editor.open(uri, SKETCH, "toml")
-    (result,) = editor.ask("textDocument/documentColor", textDocument={"uri": uri})
+def test_colours_of_a_sketch(editor: Editor, sketch: str) -> None:
+    (result,) = editor.ask("textDocument/documentColor", textDocument={"uri": sketch})
     assert [round(result["color"][k] * 255) for k in ("red", "green", "blue")] == [0x33, 0x66, 0x99]
     (shown,) = editor.ask(
         "textDocument/colorPresentation",
-        textDocument={"uri": uri},
+        textDocument={"uri": sketch},
         range=result["range"],
         color={"red": 1.0, "green": 0.0, "blue": 128 / 255, "alpha": 1.0},
     )
