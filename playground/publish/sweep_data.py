@@ -9,9 +9,8 @@ from __future__ import annotations
 import importlib
 import math
 import os
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -32,6 +31,7 @@ from playground.publish.series import SWEEP_SIZE
 from playground.publish.sweep import Sweep, combinations, sweep_of
 from playground.sketch.load import opened
 from playground.sketch.model import MAX_SIDE, Sketch
+from playground.terminal import progress as bar
 
 if TYPE_CHECKING:
     import xarray
@@ -94,7 +94,7 @@ def sweep(
     ]
     count = min(len(cases), workers or min(os.cpu_count() or 1, 4))
     results: list[SweepResult] = []
-    with _bar(f"sweep of {base.name}", len(cases), shown=progress) as advance:
+    with bar(f"sweep of {base.name}", len(cases)) if progress else nullcontext(lambda: None) as advance:
         for result in _drawn(cases, count, software):
             results.append(result)
             advance()
@@ -137,27 +137,6 @@ def _drawn(cases: Sequence[Case], count: int, software: bool) -> Iterator[SweepR
             result = outcome.get(f"case {number} of the sweep")
             assert isinstance(result, SweepResult)
             yield result
-
-
-@contextmanager
-def _bar(text: str, total: int, *, shown: bool) -> Iterator[Callable[[], None]]:
-    """Show a bar on standard error, where that is a terminal; yield what moves it on by one."""
-    if not shown or not sys.stderr.isatty():
-        yield lambda: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (
-        TextColumn(text),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("left:"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(file=sys.stderr), transient=True) as bar:
-        task = bar.add_task(text, total=total)
-        yield lambda: bar.advance(task)
 
 
 # ── what is found ──────────────────────────────────────────────────────────

@@ -7,7 +7,7 @@ pass's own gets the pass's name before it.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -51,13 +51,17 @@ class Declaration:
         head = self.code[: self.code.find("{")]
         return frozenset(_ARGUMENT.findall(head[head.find("(") :])) if "(" in head else frozenset()
 
+    def edited(self, edit: Callable[[str], str]) -> Declaration:
+        """Return it with its code and its text edited; its names stay."""
+        return replace(self, code=edit(self.code), text=edit(self.text))
+
     def renamed(self, names: Mapping[str, str]) -> Declaration:
         """Return it with other names, by the old ones."""
         names = {old: new for old, new in names.items() if old in self.words and old not in self.arguments}
         if not names:
             return self
-        code, text = _renamed(self.code, names), _renamed(self.text, names)
-        return replace(self, names=tuple(names.get(n, n) for n in self.names), code=code, text=text)
+        own = tuple(names.get(n, n) for n in self.names)
+        return replace(self.edited(lambda text: _renamed(text, names)), names=own)
 
 
 def declaration_of(text: str, *names: str, is_macro: bool = False) -> Declaration:
@@ -189,6 +193,17 @@ def joined(
     return Joined(tuple(_once(shared)), tuple(() for _ in passes), tuple(names))
 
 
+def _codes(passes: Sequence[Sequence[Declaration]]) -> dict[str, dict[int, str]]:
+    """Return for each name, by pass, all that declares it there."""
+    codes: dict[str, dict[int, str]] = {}
+    for index, declarations in enumerate(passes):
+        for each in declarations:
+            for name in each.names:
+                by_pass = codes.setdefault(name, {})
+                by_pass[index] = by_pass.get(index, "") + each.code + "\n"
+    return codes
+
+
 def _once(declarations: Collection[Declaration]) -> list[Declaration]:
     """Return declarations without those whose code is there already."""
     by_code: dict[str, Declaration] = {}
@@ -204,15 +219,11 @@ def _clashes(
     taken: Collection[str],
 ) -> list[tuple[int, str]]:
     """Return (pass, name of its text) of what means something else in another pass."""
-    codes: dict[str, dict[int, str]] = {}  # present name → pass → all that declares it there
+    codes = _codes(now)
     macros: dict[str, set[int]] = {}
     for index, declarations in enumerate(now):
-        for each in declarations:
-            for name in each.names:
-                codes.setdefault(name, {})
-                codes[name][index] = codes[name].get(index, "") + each.code + "\n"
-                if each.is_macro:
-                    macros.setdefault(name, set()).add(index)
+        for name in (name for each in declarations if each.is_macro for name in each.names):
+            macros.setdefault(name, set()).add(index)
     bad = {name for name, by_pass in codes.items() if len(set(by_pass.values())) > 1 or name in taken}
     for name, owners in macros.items():
         others = (declarations for index, declarations in enumerate(now) if index not in owners)
@@ -239,12 +250,7 @@ def with_common(passes: Sequence[Sequence[Declaration]], never: Collection[str])
 
     What names one of ``never``, or something that is not shared, is not shared.
     """
-    codes: dict[str, dict[int, str]] = {}
-    for index, declarations in enumerate(passes):
-        for each in declarations:
-            for name in each.names:
-                codes.setdefault(name, {})
-                codes[name][index] = codes[name].get(index, "") + each.code + "\n"
+    codes = _codes(passes)
     alike = {name for name, by_pass in codes.items() if len(by_pass) > 1 and len(set(by_pass.values())) == 1}
     while True:
         now = {

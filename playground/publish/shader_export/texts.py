@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from playground.engine.camera import unit_vector
 from playground.publish.export_form import COLOUR
@@ -208,13 +209,8 @@ def _caller(code: str, position: int) -> str:
 
 def with_size_of(text: PassText, word: str, size: str) -> PassText:
     """Return a text in which the size of a texture that it reads is written as a constant."""
-    pattern = re.compile(rf"\btextureSize\s*\(\s*{word}\s*,\s*0\s*\)")
-    declarations = tuple(
-        replace(each, code=pattern.sub(size, each.code), text=pattern.sub(size, each.text))
-        if word not in each.arguments
-        else each
-        for each in text.declarations
-    )
+    fixed = partial(re.compile(rf"\btextureSize\s*\(\s*{word}\s*,\s*0\s*\)").sub, size)
+    declarations = tuple(each if word in each.arguments else each.edited(fixed) for each in text.declarations)
     return replace(text, declarations=declarations)
 
 
@@ -298,24 +294,27 @@ def _with_start(declaration: Declaration, starting: Mapping[str, str], frame: st
     """Return a declaration that reads a texture's start in the first frame."""
     for name, start in starting.items():
         if declaration.reads(name) and name not in declaration.arguments:
-            code, text = (_either_calls(t, name, start, frame) for t in (declaration.code, declaration.text))
-            declaration = Declaration(declaration.names, code, text, declaration.is_macro)
+
+            def either(match: re.Match[str], call: str, start: str = start) -> str:
+                return f"({frame} == 0 ? {call.replace(match[0], f'texelFetch({start},', 1)} : {call})"
+
+            pattern = re.compile(rf"\btexelFetch\s*\(\s*{name}\s*,")
+            declaration = declaration.edited(partial(_replace_calls, pattern, either))
     return declaration
 
 
-def _either_calls(text: str, name: str, start: str, frame: str) -> str:
-    """Return a text in which each fetch of a texel is one of two, by the frame."""
-    code, position = "", 0
-    for match in re.finditer(rf"\btexelFetch\s*\(\s*{name}\s*,", text):
+def _replace_calls(pattern: re.Pattern[str], new: Callable[[re.Match[str], str], str], text: str) -> str:
+    """Replace each call whose head matches, from its name to its bracket; those in its arguments first."""
+    done = ""
+    while match := pattern.search(text):
         depth, end = 1, match.end()
         while depth and end < len(text):
             depth += (text[end] == "(") - (text[end] == ")")
             end += 1
-        call = text[match.start() : end]
-        other = call.replace(match.group(), f"texelFetch({start},", 1)
-        code += f"{text[position : match.start()]}({frame} == 0 ? {other} : {call})"
-        position = end
-    return code + text[position:]
+        arguments = _replace_calls(pattern, new, text[match.end() : end])
+        done += text[: match.start()] + new(match, match[0] + arguments)
+        text = text[end:]
+    return done + text
 
 
 def _previous(kernel: Kernel, output: Output, wire: Wire, host: Host) -> Declaration:
@@ -364,18 +363,10 @@ def without_unwired(declaration: Declaration, unwired: Mapping[str, str]) -> Dec
     """Return a declaration in which what an unwired input is read by is a constant."""
     for name, value in unwired.items():
         if declaration.reads(name):
-            code, text = (_constant_calls(t, name, value) for t in (declaration.code, declaration.text))
-            declaration = Declaration(declaration.names, code, text, declaration.is_macro)
+
+            def constant(match: re.Match[str], _: str, value: str = value) -> str:
+                return "ivec2(1)" if match[1] == "textureSize" else value
+
+            pattern = re.compile(_CALL.format(name=name))
+            declaration = declaration.edited(partial(_replace_calls, pattern, constant))
     return declaration
-
-
-def _constant_calls(text: str, name: str, value: str) -> str:
-    """Return a text in which what an unwired input is read by is the constant that it gives."""
-    pattern = re.compile(_CALL.format(name=name))
-    while match := pattern.search(text):
-        depth, end = 1, match.end()
-        while depth and end < len(text):
-            depth += (text[end] == "(") - (text[end] == ")")
-            end += 1
-        text = text[: match.start()] + ("ivec2(1)" if match[1] == "textureSize" else value) + text[end:]
-    return text

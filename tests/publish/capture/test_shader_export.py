@@ -254,7 +254,8 @@ void kernel(ivec2 texel, out float cells, out float trail) {
     float west = texelFetch(before, (texel + ivec2(size.x - 1, 0)) % size, 0).r;
     float here = texelFetch(before, texel, 0).r;
     cells = iteration == 0 ? here : max(west, iteration % 3 == 0 ? 0.0 : here);
-    trail = 0.9 * texelFetch(trail_before, texel, 0).r + 0.1 * cells + 0.001 * float(iteration);
+    int zero = int(texelFetch(trail_before, texel + int(texelFetch(trail_before, texel, 0).r), 0).r);
+    trail = 0.9 * texelFetch(trail_before, texel + zero, 0).r + 0.1 * cells + 0.001 * float(iteration);
 }
 """
 SPREAD = """// spread.glsl -- three steps a frame.

@@ -121,11 +121,7 @@ def test_without_xarray_it_says_what_to_install(sketch, monkeypatch):
 
 
 def test_the_bar_is_for_terminals(sketch, monkeypatch, capsys):
-    with sweep_data._bar("a sweep", 2, shown=True) as advance:
-        advance()
-    assert capsys.readouterr().err == ""
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    with sweep_data._bar("a sweep", 2, shown=True) as advance:
-        advance()
-        advance()
-    assert "a sweep" in capsys.readouterr().err
+    for terminal in (False, True):
+        monkeypatch.setattr(sys.stderr, "isatty", lambda shown=terminal: shown, raising=False)
+        sweep(sketch, {"relief": [1.0]}, pictures=False, workers=1)
+        assert ("sweep of" in capsys.readouterr().err) == terminal
