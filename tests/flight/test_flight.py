@@ -220,6 +220,13 @@ def rows_below_horizon(flight, size):
     )
 
 
+def holes_within(flight, parts, size=SIZE):
+    """Return how many pixels are magenta where a ray meets height 0 within so many parts."""
+    picture = read_picture(flight.draw(size, bare=True)).astype(int)
+    magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
+    return np.count_nonzero(magenta & (rows_below_horizon(flight, size) < parts * flight.plot.width))
+
+
 @pytest.mark.slow
 def test_there_is_no_hole_below_the_horizon_near_the_eye(flight):
     """Drawn over magenta, at every attitude: none of it where a ray meets height 0 within the parts made."""
@@ -228,11 +235,8 @@ def test_there_is_no_hole_below_the_horizon_near_the_eye(flight):
         flight.step(moment, 1)
         if number % 60:
             continue
-        picture = read_picture(flight.draw(SIZE, bare=True)).astype(int)
-        magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
-        near = rows_below_horizon(flight, SIZE) < 1.8 * flight.plot.width
-        holes += np.count_nonzero(magenta & near)
-        looked += np.count_nonzero(near)
+        holes += holes_within(flight, 1.8)
+        looked += np.count_nonzero(rows_below_horizon(flight, SIZE) < 1.8 * flight.plot.width)
         drawn += flight.scene.drawn
     assert holes == 0 and looked > 20_000 and drawn > 40
 
@@ -242,9 +246,7 @@ def test_the_hole_finder_finds_a_hole(flight):
     part = flight.parts.part_at(flight.craft.east, flight.craft.north)
     ahead = (part[0], part[1] + 1)
     flight.parts.slots.pop(ahead)
-    picture = read_picture(flight.draw(SIZE, bare=True)).astype(int)
-    magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
-    assert np.count_nonzero(magenta & (rows_below_horizon(flight, SIZE) < 1.8 * flight.plot.width)) > 50
+    assert holes_within(flight, 1.8) > 50
 
 
 @pytest.mark.slow
@@ -260,9 +262,7 @@ def test_skirts_close_cracks_between_levels(small_engine, terrain_of, monkeypatc
         for view in range(6):
             up = flight.floor(flight.craft.east, flight.craft.north) + 100.0 + 150.0 * (view % 3)
             flight.craft = replace(flight.craft, up=up, heading=view * 1.05, pitch=-0.25)
-            picture = read_picture(flight.draw((640, 360), bare=True)).astype(int)
-            magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
-            cracks += np.count_nonzero(magenta & (rows_below_horizon(flight, (640, 360)) < 2.0 * 960.0))
+            cracks += holes_within(flight, 2.0, (640, 360))
     assert cracks == 0 if skirt is None else cracks > 10
 
 

@@ -444,3 +444,65 @@ def test_a_size_that_a_kernel_insists_on_is_kept(
     expected = np.floor(values[np.ix_(y, x)] * 255 + 0.5).astype(np.uint8)
     again = isf_of(ctx, path) if ending == "fs" else toy_of(ctx, path)
     assert apart(np.repeat(expected[..., None], 3, axis=2), again) <= ROUNDING
+
+
+# ── widgets of an ISF, read again by us ──────────────────────────────────────
+
+WIDGETS = """#pragma kernel(output = "height:r32f")
+uniform int mode = 9;                 //! menu("soft", "hard", "none") values(-3, 9, 40)
+uniform vec2 place = vec2(0.0, 3.0);  //! point(-1, 1, 2, 4)
+uniform vec4 tint = vec4(0.25, 0.5, 1.0, 1.0);  //! colour("raw")
+uniform vec3 lit = vec3(0.25, 0.5, 1.0);        //! colour
+uniform bool go;                      //! button
+uniform float level = 0.5;            //! slider(0, 2)
+float kernel(ivec2 texel) {
+    float east = float(texel.x) / float(size.x);
+    float found = float(mode) / 80.0 + east * level * tint.g * lit.r + place.y * 0.05;
+    return go ? 1.0 - found : found;
+}
+"""
+WIDGETS_SKETCH = """format = 1
+size = [32, 18]
+[[pass]]
+name = "height"
+use = "./k"
+[view]
+use = "view/map"
+inputs = { shown = "height" }
+set = { lowest = 0.0, highest = 1.0 }
+"""
+
+
+@pytest.fixture
+def widgets(tmp_path: Path) -> Path:
+    (tmp_path / "k.glsl").write_text(WIDGETS)
+    (tmp_path / "s.toml").write_text(WIDGETS_SKETCH)
+    return tmp_path / "s.toml"
+
+
+CHANGES = [{}, {"mode": "soft"}, {"mode": "none"}, {"place": (0.5, 4.0)}, {"tint": (0.1, 0.9, 0.1, 1.0)},
+           {"lit": "#c08040"}, {"go": True}, {"level": 1.75}]  # fmt: skip
+
+
+@pytest.mark.parametrize("changes", CHANGES, ids=str)
+@pytest.mark.room("dialects")
+def test_widgets_of_an_isf_do_the_same(any_engine: Engine, widgets: Path, changes: dict[str, object]) -> None:
+    out = widgets.with_name("out.fs")
+    export(widgets, out, texture="height", engine=any_engine)
+    again = load(out)
+    names = {p.name.removeprefix("height_"): p for p in again.graph.find("view").technique.parameters}  # type: ignore[union-attr]
+    values = {f"view.{names[name].name}": value for name, value in changes.items()}
+    sketch = load(widgets).with_values({f"height.{name}": value for name, value in changes.items()})
+    expected = np.clip(any_engine.read(sketch, "height"), 0.0, 1.0)
+    array = any_engine.render(again.with_values(values), size=(32, 18)).array[::-1, :, 0]
+    np.testing.assert_allclose(array / 255.0, expected, atol=1.5 / 255.0)
+    kinds = {name: p.widget.kind for name, p in names.items()}
+    assert {
+        "mode": "menu",
+        "place": "point",
+        "tint": "colour",
+        "lit": "colour",
+        "go": "button",
+    }.items() <= kinds.items()
+    assert names["mode"].widget.values == (-3, 9, 40)
+    assert names["place"].widget.axes == ((-1.0, 1.0), (2.0, 4.0))
