@@ -104,44 +104,32 @@ def compare(
     """
     actual = _picture(actual)
     expected = None if expected is None else _picture(expected)
-    size = _size(actual)
-    expected_size = None if expected is None else _size(expected)
+    size, expected_size = _size(actual), None if expected is None else _size(expected)
+
+    def result(verdict: str, **more: Any) -> Comparison:
+        sizes: dict[str, Any] = {"size": size, "expected_size": expected_size}
+        return Comparison(verdict=verdict, tolerance=tolerance, hidden=hidden, **sizes, **more)
+
     spread = None if allow_blank else _spread(actual)
     if spread is not None:
-        colour = _colour(actual, 0, 0)
-        return Comparison(
-            verdict="blank",
-            tolerance=tolerance,
-            size=size,
-            expected_size=expected_size,
-            channels=spread,
-            actual=colour,
-        )
-    if expected is None:
-        return Comparison(verdict="missing", tolerance=tolerance, size=size, hidden=hidden)
-    if size != expected_size:
-        return Comparison(verdict="size", tolerance=tolerance, size=size, expected_size=expected_size)
+        return result("blank", channels=spread, actual=_colour(actual, 0, 0))
+    if expected is None or size != expected_size:
+        return result("missing" if expected is None else "size")
     if np.array_equal(actual.ravel().view(np.uint32), expected.ravel().view(np.uint32)):
-        return Comparison(
-            verdict="same", tolerance=tolerance, size=size, expected_size=expected_size, hidden=hidden
-        )  # as nearly all of one build are
+        return result("same")  # as nearly all of one build are
     difference = _difference(actual, expected)
     # Down the columns first: long runs in memory, where axis 2 would be runs of four.
     channels = difference.reshape(size[1], -1).max(axis=0).reshape(-1, 4).max(axis=0)
-    most = int(channels.max())
     y, x = divmod(int(difference.argmax()) // 4, size[0])
-    over = int(np.count_nonzero((difference > tolerance).view(np.uint32))) if most > tolerance else 0
-    return Comparison(
-        verdict="differs" if over else "same",
-        tolerance=tolerance,
-        size=size,
-        expected_size=expected_size,
+    beyond = int(channels.max()) > tolerance
+    over = int(np.count_nonzero((difference > tolerance).view(np.uint32))) if beyond else 0
+    return result(
+        "differs" if over else "same",
         channels=_four(channels),
         over=over,
         position=(x, y),
         actual=_colour(actual, x, y),
         expected=_colour(expected, x, y),
-        hidden=hidden,
     )
 
 

@@ -22,9 +22,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import re
-import secrets
 import shutil
 import unicodedata
 from dataclasses import asdict, dataclass
@@ -33,7 +31,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.files import make_folder, write_file
+from playground.files import make_folder
+from playground.verify.shots.results import claim_file
 
 # ── names ────────────────────────────────────────────────────────────────────
 
@@ -137,22 +136,11 @@ class Claims:
             return claim
         key = hashlib.sha256(one_spelling(claim.name).encode()).hexdigest()[:24]
         file = folder / _FOLDER / self._run / f"{renderer}.{key}{'.written' if claim.digest else ''}.json"
-        draft = file.with_name(f"{secrets.token_hex(8)}.draft")
         try:
             make_folder(file.parent)
-            write_file(draft, json.dumps(asdict(claim)))
-            try:
-                os.link(draft, file)  # unlike a renaming, it fails where one is there
-            except FileExistsError:
-                pass
-            except OSError:  # a file system without links
-                if not file.exists():
-                    draft.replace(file)
-            return Claim(**json.loads(file.read_text("utf-8")))
+            return Claim(**json.loads(claim_file(file, json.dumps(asdict(claim)))))
         except (OSError, ValueError):
             return claim  # within this process, names are kept apart all the same
-        finally:
-            draft.unlink(missing_ok=True)
 
 
 def _refusal(claim: Claim, first: Claim) -> str:

@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -355,14 +355,8 @@ class Results:
     def __init__(self, config: pytest.Config) -> None:
         self.config = config
         self.lines: list[str] = []
-        self.left = 0  # references that --shots-update left alone
-        self.stood_in: Counter[str] = Counter()  # shots compared with another renderer's references, by how
-        self.uncompared: Counter[str] = Counter()  # shots that were skipped, by why
-        self.unrecorded: dict[str, None] = {}  # why results could not be recorded
-        self.properties_of_shots: list[
-            dict[str, str]
-        ] = []  # what each checked shot tells of itself: see `properties`
-        self.checked = self.failed = False  # whether a shot was checked, and whether one failed
+        self.notified: defaultdict[str, list[str]] = defaultdict(list)  # what tests report, by what it is
+        self.properties_of_shots: list[dict[str, str]] = []  # of each checked shot: see `results`
         self.uses = Uses(config.rootpath, config.getoption("--shots-renderer"))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -373,17 +367,7 @@ class Results:
             return
         self.uses.add(report)
         for name, value in report.user_properties:
-            if name == SUMMARY_LINE:
-                self.lines.append(str(value))
-            self.left += name == UNCHANGED
-            if name == STOOD_IN:
-                self.stood_in[str(value)] += 1
-            if name == UNCOMPARED:
-                self.uncompared[str(value)] += 1
-            if name == UNRECORDED:
-                self.unrecorded[str(value)] = None
-            self.checked = self.checked or name in (CHECKED, UNCOMPARED)
-            self.failed = self.failed or (name == CHECKED and value != "same")
+            self.notified[name].append(str(value))
             if name == SHOT:
                 self.properties_of_shots.append({})
             if name == SHOT or name.startswith(f"{SHOT}."):
@@ -409,18 +393,20 @@ class Results:
 
     def pytest_sessionfinish(self) -> None:
         """Write the report, where there is something to look at or it is wanted."""
-        if not self.checked or hasattr(self.config, "workerinput"):
+        notified = self.notified
+        if not (notified[CHECKED] or notified[UNCOMPARED]) or hasattr(self.config, "workerinput"):
             return
-        if self.left:
-            self.lines.append(f"left {self.left} as they were, for they match")
-        self.lines += [f"{count} {how}" for how, count in self.stood_in.items()]
-        for why, count in self.uncompared.items():
+        self.lines += notified[SUMMARY_LINE]
+        if notified[UNCHANGED]:
+            self.lines.append(f"left {len(notified[UNCHANGED])} as they were, for they match")
+        self.lines += [f"{count} {how}" for how, count in Counter(notified[STOOD_IN]).items()]
+        for why, count in Counter(notified[UNCOMPARED]).items():
             shots = "1 shot was" if count == 1 else f"{count} shots were"
             self.lines.append(f"{shots} not compared: {why}")
         if self.config.getoption(UPDATE_FAILED) and not any(line.startswith("wrote") for line in self.lines):
             self.lines.append("--shots-update=failed wrote nothing: no shot failed that had failed before")
-        self.lines += self.unrecorded
-        if self.unrecorded:
+        if notified[UNRECORDED]:
+            self.lines += dict.fromkeys(notified[UNRECORDED])
             return
         from playground.verify.shots.recording import finish
         from playground.verify.shots.report import summarise
@@ -430,9 +416,9 @@ class Results:
             self.properties_of_shots, folder, self.config.getoption("--shots-pictures-url")
         ):
             self.lines.append(message)
-        self.lines += finish(
-            self.config, self.uses.complete(), self.failed or self.config.getoption("--shots-report")
-        )
+        failed = any(word != "same" for word in notified[CHECKED])
+        requested = failed or self.config.getoption("--shots-report")
+        self.lines += finish(self.config, self.uses.complete(), requested)
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """Print what was written, what was left alone, and where the results are."""

@@ -412,9 +412,8 @@ def place_of(folder: Path, sketch: str, home: Path) -> str:
         key = home.as_posix()
     (folder / sketch).mkdir(exist_ok=True)
     claim = folder / sketch / _CLAIM
-    if not claim.is_file():
-        _put(claim, key)
-    return sketch if claim.read_text("utf-8") == key else f"{sketch}-{_digest(key)}"
+    first = claim.read_text("utf-8") if claim.is_file() else claim_file(claim, key)
+    return sketch if first == key else f"{sketch}-{hashlib.sha256(key.encode()).hexdigest()[:8]}"
 
 
 def drop(folder: Path, record: Record) -> None:
@@ -460,23 +459,21 @@ def clean(folder: Path, root: Path, complete: Mapping[Path, Collection[str]]) ->
                 folder_path.rmdir()
 
 
-def _put(claim: Path, key: str) -> None:
-    """Write a claim, whole, unless another process has been faster."""
-    draft = claim.with_name(f"{_CLAIM}.{secrets.token_hex(6)}")
-    write_file(draft, key)
+def claim_file(path: Path, text: str) -> str:
+    """Write a file, whole, unless another process has been faster; return what is there then."""
+    draft = path.with_name(f"{path.name}.{secrets.token_hex(6)}.draft")
     try:
-        os.link(draft, claim)  # unlike a renaming, it fails where one is there
-    except FileExistsError:
-        pass
-    except OSError:  # a file system without links
-        if not claim.exists():
-            draft.replace(claim)
+        write_file(draft, text)
+        try:
+            os.link(draft, path)  # unlike a renaming, it fails where one is there
+        except FileExistsError:
+            pass
+        except OSError:  # a file system without links
+            if not path.exists():
+                draft.replace(path)
     finally:
         draft.unlink(missing_ok=True)
-
-
-def _digest(key: str) -> str:
-    return hashlib.sha256(key.encode()).hexdigest()[:8]
+    return path.read_text("utf-8")
 
 
 # ── properties for --junitxml ────────────────────────────────────────────────
