@@ -87,7 +87,7 @@ class FileReport:
     skipped: tuple[str, ...] = ()  # drivers that this machine does not have
     errors: tuple[Diagnostic, ...] = ()
     warnings: tuple[Diagnostic, ...] = ()  # what fails nothing
-    notes: tuple[str, ...] = ()  # sentences: fast variants that do not run
+    notes: tuple[str, ...] = ()  # messages: fast variants that do not run
     seconds: float = 0.0  # in the sandbox
 
     def as_json(self) -> dict[str, object]:

@@ -22,7 +22,7 @@ from playground.verify.shots.results import Record, from_json, read_results, to_
 from ..cases import each
 from ..test_refusals import Row, rows
 
-RECORD = json.loads(to_json(Record(sketch="hills", shot="dawn", word="differs", sentence="it differs")))
+RECORD = json.loads(to_json(Record(sketch="hills", shot="dawn", word="differs", message="it differs")))
 NAMES = {
     **{each.__name__: each for each in (compare, from_json, levels_of, mask_of, read, read_fallbacks)},
     **{each.__name__: each for each in (Light, read_results, strip_of, taken, tolerance_of)},
@@ -44,7 +44,7 @@ def test_a_mistake_is_one_message(row: Row, tmp_path: Path) -> None:
         return tmp_path / "file"
 
     def written(sketch: str, shot: str) -> Record:
-        return write_result(tmp_path / "out", Record(sketch=sketch, shot=shot, word="same", sentence=""), {})
+        return write_result(tmp_path / "out", Record(sketch=sketch, shot=shot, word="same", message=""), {})
 
     names = NAMES | {"HERE": tmp_path, "record": record, "written": written}
     names |= {"figures": lambda text: read(file(text))}

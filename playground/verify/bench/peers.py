@@ -88,7 +88,7 @@ def _opensimplex(to: PeerSetup, octaves: int, lacunarity: float, gain: float) ->
 
     def run() -> object:
         scales = [(lacunarity**k, gain**k) for k in range(octaves)]
-        return sum(noise.noise2array(along * scale, along * scale) * share for scale, share in scales)
+        return sum(noise.noise2array(along * scale, along * scale) * weight for scale, weight in scales)
 
     return Peer("opensimplex", run)
 

@@ -97,6 +97,6 @@ def _print_report(report: FileReport, printed: set[Diagnostic]) -> None:
         text = str(diagnostic) if diagnostic.severity == "error" else f"{diagnostic.severity}: {diagnostic}"
         print("\n".join(f"        {line}" for line in text.split("\n")))
     printed |= set(alike.values())
-    for sentence in report.notes:
-        print(f"        note: {sentence}")
+    for message in report.notes:
+        print(f"        note: {message}")
     sys.stdout.flush()  # a pipe's reader sees each file as it is done

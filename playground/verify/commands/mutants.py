@@ -129,7 +129,7 @@ def _print(results: Sequence[MutantResult]) -> None:
             note(f"{result.mutant.name} does not apply: {result.why_not}")
 
 
-_WIDE = 120  # columns of a terminal that has room for sentences
+_WIDE = 120  # columns of a terminal that has room for messages
 _NUMBERS = ("most", "over 1", "FLIP", "FLIP tile")
 
 
@@ -137,7 +137,9 @@ def _row(result: MutantResult) -> tuple[str, ...]:
     comparison = result.comparison
     assert comparison is not None
     numbers = (
-        ["", ""] if comparison.verdict in ("blank", "size") else [str(comparison.most), f"{result.share:.2%}"]
+        ["", ""]
+        if comparison.verdict in ("blank", "size")
+        else [str(comparison.most), f"{result.fraction:.2%}"]
     )
     perceived = result.perceived
     numbers += ["", ""] if perceived is None else [f"{perceived.mean:.3f}", f"{perceived.tile:.3f}"]

@@ -176,7 +176,7 @@ def accept(
             refused += 1
             complain(str(error))
             continue
-        for line in change.sentences:
+        for line in change.messages:
             print(line)
     if refused:
         raise typer.Exit(MISTAKE)

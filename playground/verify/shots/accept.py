@@ -45,7 +45,7 @@ class Change:
         return self.written is not None and bool(self.before) and self.written not in self.before
 
     @property
-    def sentences(self) -> list[str]:
+    def messages(self) -> list[str]:
         """Return what was done, a line for each file."""
         if self.written is None:
             return [f"{self.name}: a reference is this picture already"]
@@ -68,7 +68,7 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
     if record.ok:
         raise DataError(f"{record.name}: it passed, so nothing to accept")
     if record.word in NEVER_ACCEPTED:
-        raise DataError(f"{record.name}: no reference can be made of it ({record.sentence})")
+        raise DataError(f"{record.name}: no reference can be made of it ({record.message})")
     if also and record.word == "unreadable":
         raise DataError(f"{record.name}: its reference is damaged, so it cannot stay next to this one")
     position = _place(record)

@@ -114,7 +114,7 @@ def _told(node: pytest.Item) -> str:
 Result = TypeVar("Result")
 
 _ENDS = {SandboxCrash: "crash", SandboxTimeout: "hang", OpenGLFault: "gl-error"}
-"""The words for what gives no picture; anything else that a sentence explains is an "error"."""
+"""The words for what gives no picture; anything else that a message explains is an "error"."""
 
 
 def word_of(error: PlaygroundError) -> str:
@@ -128,7 +128,7 @@ class _Raised:
 
     error: PlaygroundError
     word: str
-    sentence: str
+    message: str
     case: ShotCase
 
 
@@ -230,7 +230,7 @@ class Checker:
         """Report, once in this process, which fast variants do not run."""
         if self._plain_forms is None:
             self._plain_forms = PlainForms(silent, compute=renderer.compute, draws=renderer.software)
-        self._plain_forms.notice = lambda sentence: node.user_properties.append((SUMMARY_LINE, sentence))
+        self._plain_forms.notice = lambda message: node.user_properties.append((SUMMARY_LINE, message))
         self._plain_forms.report(case.sketch)
 
     def show_what_was_printed(self, node: pytest.Item) -> None:
@@ -260,9 +260,9 @@ class Checker:
 
     def raised(self, node: pytest.Item, case: ShotCase, error: PlaygroundError) -> PlaygroundError:
         """Return what a test is to raise for a mistake, with its word; it is recorded if the test fails."""
-        word, sentence = word_of(error), str(error)
-        raised = error if word == "error" else type(error)(f"{word}: {sentence}")
-        node.stash[_RAISED] = _Raised(raised, word, sentence, case)
+        word, message = word_of(error), str(error)
+        raised = error if word == "error" else type(error)(f"{word}: {message}")
+        node.stash[_RAISED] = _Raised(raised, word, message, case)
         return raised.with_traceback(None)
 
     @pytest.hookimpl(wrapper=True)
@@ -296,7 +296,7 @@ class Checker:
         raised = item.stash.get(_RAISED, None)
         if raised and call.when == "call" and call.excinfo and call.excinfo.value is raised.error:
             self.recorder.forget_earlier(item, raised.case)
-            self.recorder.record_none(item, raised.case, raised.word, raised.sentence, call.duration)
+            self.recorder.record_none(item, raised.case, raised.word, raised.message, call.duration)
 
     def _without(self, node: pytest.Item, case: ShotCase, text: str) -> NoReturn:
         message = f"the expected renderer is missing: shots are compared on {self.expected}; {text}"
@@ -377,13 +377,13 @@ class Checker:
             case.sketch, case.shot.name, outcome.renderer, pixels, fingerprint.drawn, fingerprint.fonts
         )
         self._written.add(written)
-        node.user_properties.append((SUMMARY_LINE, f"wrote {shown(written)}  ({outcome.sentence})"))
+        node.user_properties.append((SUMMARY_LINE, f"wrote {shown(written)}  ({outcome.message})"))
         for other in removed:
             line = f"removed {shown(other)}  (it let the picture before this one pass)"
             node.user_properties.append((SUMMARY_LINE, line))
 
     def _explained(self, node: pytest.Item, outcome: Outcome) -> str:
-        lines = [f"{outcome.case}: {outcome.sentence}"]
+        lines = [f"{outcome.case}: {outcome.message}"]
         if self.updating and outcome.word in NEVER_ACCEPTED:
             lines.append("    not written: a broken picture is never a reference")
         elif self.updating:

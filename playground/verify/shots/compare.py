@@ -57,7 +57,7 @@ class Comparison:
         return self.verdict == "same"
 
     @property
-    def share(self) -> float:
+    def fraction(self) -> float:
         """Fraction of the pixels that are compared that differ beyond the tolerance."""
         return self.over / (self.size[0] * self.size[1] - self.hidden)
 
@@ -84,7 +84,7 @@ class Comparison:
         if self.ok:
             return f"same: {most}"
         compared = width * height - self.hidden
-        counted = f"{self.over} of {compared} pixels ({100.0 * self.share:.3g} %) over {self.tolerance}"
+        counted = f"{self.over} of {compared} pixels ({100.0 * self.fraction:.3g} %) over {self.tolerance}"
         return f"differs: {most}, {self.actual} where {self.expected} was expected; {counted}"
 
 

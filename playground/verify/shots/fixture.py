@@ -177,7 +177,7 @@ class ShotFixture:
 
         ``frames`` are two pictures or more of one size, as `check` takes them, not all the same;
         frames of an engine have to be drawn one after another, by a generator. ``times`` are
-        in seconds, for the sentence on the first that fails; frames of ``shot.render`` have theirs.
+        in seconds, for the message on the first that fails; frames of ``shot.render`` have theirs.
         Otherwise as `check`; ``mask`` hides the same of each frame, and is no texture.
         """
         __tracebackhide__ = True

@@ -192,7 +192,7 @@ def _perceived(opponent: Floats) -> Floats:
     blurred = np.empty_like(opponent)
     for channel, kernels, channel_values in zip(opponent, _blurs(), blurred, strict=True):
         channel_values[...] = sum(
-            (_along(_along(channel, line, 0), line, 1) * share for line, share in kernels), _ZERO
+            (_along(_along(channel, line, 0), line, 1) * weight for line, weight in kernels), _ZERO
         )
     blurred[0] += 16
     relative, _, inverse = _matrices()

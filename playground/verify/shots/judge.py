@@ -97,8 +97,8 @@ def tolerated(
     if most > tolerance.levels:
         return Tolerated(f"the tolerance allows {tolerance.levels}")
     over = (np.abs(signed) > TOLERANCE).any(axis=2)
-    share = np.count_nonzero(over) / (over.size - hidden)
-    if share > tolerance.share:
+    fraction = np.count_nonzero(over) / (over.size - hidden)
+    if fraction > tolerance.share:
         return Tolerated(f"the tolerance allows {100 * tolerance.share:g} %")
     if corner := _biased(np.where(over[..., None], signed, 0), over):
         x, y = corner
@@ -162,14 +162,14 @@ other way at single pixels, by up to 20. Such a picture is accepted as a further
 ``<shot>.2.png``.
 """
 
-OTHER_SHARE = 0.005
+OTHER_FRACTION = 0.005
 """Share of the pixels that may differ by more than `TOLERANCE` from another build's."""
 
 WINDOW = 32
 """[pixels] Side of the window in which pixels that differ may not crowd."""
 
 CROWD = 51
-"""[pixels] of a window that may differ by more than `TOLERANCE`: one in twenty, ten times the share.
+"""[pixels] of a window that may differ by more than `TOLERANCE`: one in twenty, ten times the fraction.
 
 Between builds there were 6 at most, roundings that lie along an edge. A square of 8 × 8 pixels that
 is a little off is more, and is no rounding.
@@ -223,7 +223,7 @@ class Judgement:
 
     word: str  # of `WORDS`
     comparison: Comparison  # with the nearest reference
-    sentence: str  # what there is to say, beginning with the word
+    message: str  # what there is to say, beginning with the word
     tier: str = ""  # how strictly it was compared; "": it was not
     fingerprint: Fingerprint = field(default_factory=Fingerprint)  # the picture's
     differences: tuple[str, ...] = ()  # how its origin differs from the reference's, as text
@@ -257,7 +257,7 @@ def judge(
     """
     rule = rule or Rule()
     judgement, reference = _nearest(actual, fingerprint, references, others, rule)
-    judgement = replace(judgement, tolerance=rule.tolerance, sentence=_with_rule(judgement, rule))
+    judgement = replace(judgement, tolerance=rule.tolerance, message=_with_rule(judgement, rule))
     wrong = ""
     if gl_error:
         wrong = f"gl-error: drawing it left the OpenGL error {gl_error}, so it is not to be trusted"
@@ -265,22 +265,22 @@ def judge(
         wrong = f"nan: {not_finite}"
     if wrong:
         word = wrong.partition(":")[0]
-        return replace(judgement, word=word, sentence=wrong, tier=""), reference
+        return replace(judgement, word=word, message=wrong, tier=""), reference
     return judgement, reference
 
 
 def _with_rule(judgement: Judgement, rule: Rule) -> str:
-    """Return a judgement's sentence, with what is masked, and whether a tolerance was needed."""
-    sentence = judgement.sentence
+    """Return a judgement's message, with what is masked, and whether a tolerance was needed."""
+    message = judgement.message
     if judgement.ok and rule.tolerance and judgement.tier in (SAME_BUILD, OTHER_BUILD):
         if judgement.tolerated:
-            sentence = re.sub("^(differs|crowded)", "same, by the tolerance", sentence)
+            message = re.sub("^(differs|crowded)", "same, by the tolerance", message)
         else:
-            sentence += "; the tolerance is not needed"
+            message += "; the tolerance is not needed"
     if rule.hidden:
         width, height = judgement.comparison.size
-        sentence += f"; {rule.hidden} pixels ({100 * rule.hidden / (width * height):.3g} %) are masked"
-    return sentence
+        message += f"; {rule.hidden} pixels ({100 * rule.hidden / (width * height):.3g} %) are masked"
+    return message
 
 
 def unreadable(actual: NDArray[np.uint8], fingerprint: Fingerprint, reason: str) -> Judgement:
@@ -288,7 +288,7 @@ def unreadable(actual: NDArray[np.uint8], fingerprint: Fingerprint, reason: str)
     return Judgement(
         word="unreadable",
         comparison=compare(actual, None),
-        sentence=f"unreadable: {reason}",
+        message=f"unreadable: {reason}",
         fingerprint=fingerprint,
     )
 
@@ -311,7 +311,7 @@ def _nearest(
         return Judgement(
             word="blank",
             comparison=alone,
-            sentence=f"{alone}, except masked areas",
+            message=f"{alone}, except masked areas",
             fingerprint=fingerprint,
         ), next(iter((*references, *others)), None)
     if not references and others:
@@ -319,7 +319,7 @@ def _nearest(
         return min(perceived, key=lambda pair: _distance(pair[0]))
     if not references:
         return Judgement(
-            word=alone.verdict, comparison=alone, sentence=str(alone), fingerprint=fingerprint
+            word=alone.verdict, comparison=alone, message=str(alone), fingerprint=fingerprint
         ), None
     own = [fingerprint.same_build(reference.fingerprint) for reference in references]
     judged = []
@@ -349,9 +349,9 @@ def _with_tolerance(
         passed = replace(judgement.comparison, verdict="same")
         return replace(judgement, word="same", comparison=passed, tolerated=True)
     if result.crowded:
-        sentence = judgement.sentence.replace("differs", "crowded", 1)
-        return replace(judgement, word="crowded", sentence=f"{sentence}; {result.why_not}")
-    return replace(judgement, sentence=f"{judgement.sentence}; {result.why_not}")
+        message = judgement.message.replace("differs", "crowded", 1)
+        return replace(judgement, word="crowded", message=f"{message}; {result.why_not}")
+    return replace(judgement, message=f"{judgement.message}; {result.why_not}")
 
 
 def _judged(
@@ -369,14 +369,14 @@ def _judged(
         return judgement
     most = f"differs: max difference {comparison.most} of 255"
     if comparison.most > OTHER_TOLERANCE:
-        return replace(judgement, sentence=f"{judgement.sentence}; of another build, {OTHER_TOLERANCE} may")
+        return replace(judgement, message=f"{judgement.message}; of another build, {OTHER_TOLERANCE} may")
     crowd = most_crowded(_over(hidden(actual, reference.pixels, rule.mask), reference.pixels))
     judgement = replace(judgement, crowd=crowd)
-    share = comparison.share
-    counted = f"{comparison.over} pixels ({100 * share:.3g} %) over {TOLERANCE}"
-    if share > OTHER_SHARE:
+    fraction = comparison.fraction
+    counted = f"{comparison.over} pixels ({100 * fraction:.3g} %) over {TOLERANCE}"
+    if fraction > OTHER_FRACTION:
         return replace(
-            judgement, sentence=f"{most}, {counted}; of another build, {100 * OTHER_SHARE:g} % may be"
+            judgement, message=f"{most}, {counted}; of another build, {100 * OTHER_FRACTION:g} % may be"
         )
     location = f"at x = {crowd.place[0]}, y = {crowd.place[1]}"
     window = (
@@ -384,13 +384,13 @@ def _judged(
     )
     if crowd.count > CROWD:
         return replace(
-            judgement, word="crowded", sentence=f"crowded: {counted}, {window}; at most {CROWD} may be"
+            judgement, word="crowded", message=f"crowded: {counted}, {window}; at most {CROWD} may be"
         )
     passed = replace(comparison, verdict="same")
-    sentence = (
+    message = (
         f"same, as another build's: max difference {comparison.most} of 255, {counted}, at most {window}"
     )
-    return replace(judgement, word="same", comparison=passed, sentence=sentence)
+    return replace(judgement, word="same", comparison=passed, message=message)
 
 
 def _judged_by_eye(
@@ -410,11 +410,11 @@ def _judged_by_eye(
     measured += f"y = {corner[1]} from the top left"
     if perceived.mean > FLIP_MEAN or tile > FLIP_TILE:
         bounds = f"at most {FLIP_MEAN:g} and {FLIP_TILE:g} may be between renderers"
-        sentence = f"structure: {measured}; {bounds}"
-        return replace(judgement, word="structure", sentence=sentence, perceived=perceived)
+        message = f"structure: {measured}; {bounds}"
+        return replace(judgement, word="structure", message=message, perceived=perceived)
     passed = replace(comparison, verdict="same")
-    sentence = f"same in structure: {measured}. {STRUCTURE_ONLY}"
-    return replace(judgement, word="same", comparison=passed, sentence=sentence, perceived=perceived)
+    message = f"same in structure: {measured}. {STRUCTURE_ONLY}"
+    return replace(judgement, word="same", comparison=passed, message=message, perceived=perceived)
 
 
 _FINAL = ("blank", "size", "same")  # verdicts on the pixels that no tier changes
@@ -430,7 +430,7 @@ def _by_pixels(
     return Judgement(
         word=comparison.verdict,
         comparison=comparison,
-        sentence=str(comparison),
+        message=str(comparison),
         tier="" if comparison.verdict in ("blank", "size") else tier,
         fingerprint=fingerprint,
         differences=fingerprint.differences(reference.fingerprint),
@@ -522,19 +522,19 @@ def judge_frames(
     judgement, cell_reference = judged[worst]
     path = cell_reference.path if cell_reference else None
     reference = next((r for r in (*fitting, *alike) if r.path == path), None)
-    sentence = judgement.sentence
+    message = judgement.message
     if judgement.word not in ("missing", "nan", "gl-error"):  # which are of no frame, or say of which
-        word, _, rest = sentence.partition(": ")
+        word, _, rest = message.partition(": ")
         whose = f"frame {worst + 1} of {count}{labels[worst] and f', {labels[worst]}'}"
-        sentence = f"{word}: {f'all {count} frames; of ' if judgement.ok else ''}{whose}: {rest}"
+        message = f"{word}: {f'all {count} frames; of ' if judgement.ok else ''}{whose}: {rest}"
         failed = sum(word != "same" for word in words)
-        sentence += f"; {failed} of the {count} frames fail" if failed > 1 else ""
+        message += f"; {failed} of the {count} frames fail" if failed > 1 else ""
     whole = _whole(strip, reference, count, rule)
     return (
         replace(
             judgement,
             comparison=replace(whole, verdict=judgement.comparison.verdict),
-            sentence=sentence,
+            message=message,
             crowd=None,
             perceived=None,
         ),

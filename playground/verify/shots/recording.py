@@ -72,7 +72,7 @@ class Recorder:
         comparison, perceived, reference = outcome.comparison, outcome.perceived, outcome.reference
         name, own = outcome.case.shot.name, outcome.renderer.slug
         frame = outcome.frame if isinstance(outcome.frame, RenderedShot) else None
-        record = self._begun(node, outcome.case, outcome.word, outcome.sentence, seconds)
+        record = self._begun(node, outcome.case, outcome.word, outcome.message, seconds)
         try:
             references = digests_of(accepted(outcome.case.sketch, name, own))
         except DataError:  # the outcome says so, and whoever accepts it is told again
@@ -112,9 +112,9 @@ class Recorder:
             node.user_properties.append((STOOD_IN, stands_in))
         return self._write(node, outcome.case, record, {} if outcome.ok else images_of(outcome))
 
-    def record_none(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> str:
+    def record_none(self, node: pytest.Item, case: ShotCase, word: str, message: str, seconds: float) -> str:
         """Write the record of a shot of which there is no picture; returns what `record` does."""
-        first, _, rest = sentence.partition("\n")
+        first, _, rest = message.partition("\n")
         record = replace(self._begun(node, case, word, first, seconds), error=rest)
         return self._write(node, case, record, {})
 
@@ -187,7 +187,7 @@ class Recorder:
                 # Two tests check pictures of one name: what passed may not hide what failed.
                 if record.ok:
                     return ""
-                record = replace(record, sentence=f"{record.sentence}; {before.run.node} failed as well")
+                record = replace(record, message=f"{record.message}; {before.run.node} failed as well")
             written = write_result(self.folder, record, pictures)
             node.user_properties += properties_of(self.folder, written)
         except (DataError, OSError) as error:
@@ -218,12 +218,12 @@ class Recorder:
             self._earlier[folder_name] = [r for r in there if r.run.name != self.run and r not in gone]
         return folder_name
 
-    def _begun(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> Record:
+    def _begun(self, node: pytest.Item, case: ShotCase, word: str, message: str, seconds: float) -> Record:
         return Record(
             sketch=case.sketch.name,
             shot=case.shot.name,
             word=word,
-            sentence=sentence,
+            message=message,
             expected=Expected(home=_home(case, self.root)),
             run=CheckRun(
                 root=str(self.root), node=typed(node), seconds=seconds, when=time.time(), name=self.run
@@ -261,14 +261,14 @@ def _numbers(outcome: Outcome) -> dict[str, float]:
     comparison = outcome.comparison
     if comparison.verdict in ("blank", "missing", "size"):
         return {}
-    share, labels = comparison.share, getattr(outcome.frame, "labels", ())
+    fraction, labels = comparison.fraction, getattr(outcome.frame, "labels", ())
     if labels:  # of its frames, without the cells of the strip that are left over
         width, height = frame_size(outcome.frame.array, len(labels))
-        share = comparison.over / (width * height * len(labels) - comparison.hidden)
+        fraction = comparison.over / (width * height * len(labels) - comparison.hidden)
     numbers: dict[str, float] = {
         "largest difference, levels of 255": comparison.most,
         f"pixels over {comparison.tolerance}": comparison.over,
-        f"pixels over {comparison.tolerance}, %": 100.0 * share,
+        f"pixels over {comparison.tolerance}, %": 100.0 * fraction,
     }
     if labels:
         numbers = {FRAMES: len(labels)} | numbers
@@ -294,7 +294,7 @@ def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[
             sketch=path.name,
             shot="references",
             word="error",
-            sentence=first,
+            message=first,
             error=rest,
             folder="" if folder_name == path.name else folder_name,
             expected=Expected(home=str(home)),

@@ -55,7 +55,7 @@ from playground.verify.shots.plugin_constants import REPORT, SHOT
 # ── records ──────────────────────────────────────────────────────────────────
 
 
-FORMAT = 2
+FORMAT = 3
 """What a record's ``format`` says; a record of another is refused in words."""
 
 FOLDER = REPORT
@@ -135,7 +135,7 @@ class Record:
     sketch: str  # its name: a folder here, and in screenshots/
     shot: str  # its name, without dots
     word: str  # "same" passed; else differs, crowded, structure, size, blank, nan, gl-error, missing, …
-    sentence: str  # what was found, for a person
+    message: str  # what was found, for a person
     renderer: str = ""  # slug of what drew it, as "llvmpipe"; "" where nothing was drawn
     numbers: dict[str, float] = field(default_factory=dict)  # what was measured, by name with its unit
     place: tuple[int, int] | None = None  # [pixels] x and y, from the top left, of the worst one

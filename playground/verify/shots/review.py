@@ -107,7 +107,7 @@ class ReviewSession:
         if change is not None:
             raise DataError("it is accepted already")
         self.changes[result] = change = accept(self.folder, record, also=action == "also")
-        return "; ".join(change.sentences).removeprefix(f"{record.name}: ")
+        return "; ".join(change.messages).removeprefix(f"{record.name}: ")
 
 
 def _picture_url(record: Record, kind: str) -> str:
@@ -156,7 +156,7 @@ class Review:
     def summary(self) -> list[str]:
         """Return what was accepted and not undone."""
         done = list(self.session.changes.values())  # a request may still be answered
-        written = [line for change in done if change.written for line in change.sentences]
+        written = [line for change in done if change.written for line in change.messages]
         return written or ["nothing was accepted"]
 
     def __enter__(self) -> Review:

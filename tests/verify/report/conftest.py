@@ -31,10 +31,10 @@ def leave(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Reco
         sketch, shot = name.split("/")
         position = tmp_path / "screenshots" / sketch / "llvmpipe"
         pictures = {}
-        values: dict[str, object] = {"word": "crash", "sentence": "the process died"}
+        values: dict[str, object] = {"word": "crash", "message": "the process died"}
         if actual is not None:
             result = compare(actual, expected)
-            values = {"word": result.verdict, "sentence": str(result), "renderer": "llvmpipe", "texts": TEXTS}
+            values = {"word": result.verdict, "message": str(result), "renderer": "llvmpipe", "texts": TEXTS}
             values |= {"size": result.size, "expected_size": result.expected_size, "place": result.position}
             values |= {"root": str(tmp_path), "home": "screenshots"}
             pictures = {"actual": actual}

@@ -34,7 +34,7 @@ def test_the_picture_takes_the_place_of_all_references(leave) -> None:
     pixels, texts = read_png(PLACE / "dawn.png")
     np.testing.assert_array_equal(pixels, picture(1))
     assert texts == TEXTS
-    assert change.sentences == [
+    assert change.messages == [
         "wrote screenshots/hills/llvmpipe/dawn.png  (in place of the one before)",
         "removed screenshots/hills/llvmpipe/dawn.2.png  (it let the picture before this one pass)",
     ]
@@ -66,14 +66,14 @@ def test_further_reference_takes_next_number_and_keeps_others(leave) -> None:
 @pytest.mark.parametrize("also", [False, True])
 def test_the_first_reference_has_the_shot_s_own_name(leave, also: bool) -> None:
     change = accept(RESULTS, leave(actual=picture(1)), also=also)
-    assert list(files()) == ["dawn.png"] and change.sentences[0].endswith("(the first)")
+    assert list(files()) == ["dawn.png"] and change.messages[0].endswith("(the first)")
     assert undo(change) == ["removed screenshots/hills/llvmpipe/dawn.png  (there was none before)"]
     assert not files()
 
 
 @pytest.mark.parametrize("word", ["blank", "nan", "gl-error", "crash", "hang", "error"])
 def test_a_broken_picture_is_never_accepted(leave, word: str) -> None:
-    record = leave(actual=picture(1), expected=picture(2), word=word, sentence="it is broken")
+    record = leave(actual=picture(1), expected=picture(2), word=word, message="it is broken")
     before = files()
     with pytest.raises(DataError, match=r"hills/dawn: no reference can be made of it \(it is broken\)"):
         accept(RESULTS, record)
@@ -113,7 +113,7 @@ def test_accepting_twice_says_that_it_is_done_already(leave) -> None:
     accept(RESULTS, record)
     before = files()
     again = accept(RESULTS, record)
-    assert again.written is None and again.sentences == ["hills/dawn: a reference is this picture already"]
+    assert again.written is None and again.messages == ["hills/dawn: a reference is this picture already"]
     assert files() == before and undo(again) == []
 
 
@@ -141,7 +141,7 @@ def test_undo_never_loses_what_was_written_since(leave) -> None:
 
 def test_a_damaged_reference_is_replaced_but_never_a_further_one(leave) -> None:
     PLACE.mkdir(parents=True)
-    record = leave(actual=picture(1), expected=picture(2), word="unreadable", sentence="damaged")
+    record = leave(actual=picture(1), expected=picture(2), word="unreadable", message="damaged")
     with pytest.raises(DataError, match="is damaged, so it cannot stay"):
         accept(RESULTS, record, also=True)
     accept(RESULTS, record)
@@ -180,9 +180,9 @@ def test_a_record_cannot_lead_elsewhere(leave, change: dict[str, str]) -> None:
 
 def test_shots_are_named_or_matched() -> None:
     records = [
-        Record(sketch="a", shot="x", word="differs", sentence=""),
-        Record(sketch="a", shot="y", word="same", sentence=""),
-        Record(sketch="b[1]", shot="x", word="differs", sentence=""),
+        Record(sketch="a", shot="x", word="differs", message=""),
+        Record(sketch="a", shot="y", word="same", message=""),
+        Record(sketch="b[1]", shot="x", word="differs", message=""),
     ]
 
     def names(*patterns: str) -> list[str]:
@@ -202,7 +202,7 @@ def test_the_command_writes_and_says_what(leave, capsys) -> None:
     leave("hills/dawn", picture(1), picture(2))
     leave("hills/dusk", picture(3))
     leave("hills/noon", picture(4), picture(4))
-    leave("hills/night", word="hang", sentence="took more than 60 s")
+    leave("hills/night", word="hang", message="took more than 60 s")
     assert main(["shots", "accept", "results", "hills/dawn"]) == 0
     message = capsys.readouterr()
     assert (

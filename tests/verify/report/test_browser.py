@@ -33,7 +33,7 @@ def page(leave, browser: Browser) -> Iterator[Browser]:
     """Give a report on three failures, the first of which shows two pictures of noise."""
     leave("hills/dawn", picture(1, 64, 36), picture(2, 64, 36))
     leave("hills/dusk", picture(3))
-    leave(f"{NAME}/night", word="hang", sentence=f"stopped {NAME}", error=NAME)
+    leave(f"{NAME}/night", word="hang", message=f"stopped {NAME}", error=NAME)
     path = write_report(Path("results"))
     browser.open("about:blank")
     browser.open(f"{path.absolute().as_uri()}#hills/dawn")

@@ -108,9 +108,9 @@ EVIL = '<script>alert("1")</script>&amp;\'"><img src=x onerror=alert(2)>'
 
 
 def test_no_text_of_a_record_becomes_markup(leave) -> None:
-    """Names, sentences, what a driver printed: the page shows them letter for letter."""
+    """Names, messages, what a driver printed: the page shows them letter for letter."""
     record = leave(
-        "a/b", picture(1), None, sentence=EVIL, tier=EVIL, catches=EVIL, error=EVIL, node=EVIL, command=EVIL
+        "a/b", picture(1), None, message=EVIL, tier=EVIL, catches=EVIL, error=EVIL, node=EVIL, command=EVIL
     )
     texts = {"renderer": EVIL, f"{EVIL}": EVIL}
     failing = replace(
@@ -165,7 +165,7 @@ def test_the_head_counts_words_and_says_what_drew_them(leave) -> None:
     leave("a/x", picture(1), picture(2))
     leave("a/y", picture(3), picture(3), when=5.0, run="2")
     leave("a/z", picture(4), picture(4), when=4.0, run="1", seconds=0.5)
-    leave("b/x", word="crash", sentence="died", error="Segmentation fault\n")
+    leave("b/x", word="crash", message="died", error="Segmentation fault\n")
     page = made()
     assert page.text("h1") == page.text("title") == "2 of 4 shots failed"
     counts = page.text("ul", class_="counts")
@@ -191,17 +191,17 @@ def test_without_a_failure_it_says_so_and_holds_no_picture(leave) -> None:
 def test_every_word_has_its_own_explanation(leave) -> None:
     leave(actual=picture(1), expected=picture(2))
     (record,) = read_results(Path("results"))
-    sentences = set()
+    messages = set()
     for word, meaning in MEANINGS.items():
         if word == "same":
             continue
         page = Page(report_html([record_of(flat(record) | {"word": word, "tier": ""})], Path("results")))
-        assert page.text("p", class_="meaning") == meaning.sentence
-        sentences.add(meaning.sentence)
+        assert page.text("p", class_="meaning") == meaning.message
+        messages.add(meaning.message)
         commands = [text for _, text in page.all("code")]
         assert bool(commands) is (word not in NEVER_ACCEPTED)
         assert meaning.broken is (word in NEVER_ACCEPTED)
-    assert len(sentences) == len(MEANINGS) - 1
+    assert len(messages) == len(MEANINGS) - 1
     page = Page(
         report_html(
             [record_of(flat(record) | {"tier": "same build", "catches": "Any change."})], Path("results")
@@ -273,7 +273,7 @@ def test_every_kind_of_picture_has_its_caption(leave) -> None:
                 sketch="a",
                 shot="b",
                 word="differs",
-                sentence="x",
+                message="x",
                 actual=Actual(pictures={k: f"a/b.{k}.png" for k in CAPTIONS}),
             )
         ],

@@ -57,7 +57,7 @@ def client(leave) -> Iterator[Client]:
     leave("hills/dawn", picture(1), picture(2))
     leave("hills/dusk", picture(3))
     leave("hills/noon", picture(4), picture(4))
-    leave("hills/night", word="hang", sentence="took more than 60 s")
+    leave("hills/night", word="hang", message="took more than 60 s")
     with Review(RESULTS) as review:
         serving = threading.Thread(target=review.serve, daemon=True)
         serving.start()

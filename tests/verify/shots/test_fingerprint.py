@@ -1,4 +1,4 @@
-"""What a picture says it comes from: read from the driver, stored in a PNG, and compared in sentences."""
+"""What a picture says it comes from: read from the driver, stored in a PNG, and compared in messages."""
 
 from __future__ import annotations
 

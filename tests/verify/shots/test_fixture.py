@@ -128,7 +128,7 @@ def test_a_name_may_begin_with_a_digit(run: Run, pytester: pytest.Pytester) -> N
 
 
 @pytest.mark.parametrize(
-    ("call", "sentence"),
+    ("call", "message"),
     [
         (
             "shot.check(RAMP, 'a', by='numpy'); shot.check(RAMP, 'a', by='numpy')",
@@ -143,13 +143,11 @@ def test_a_name_may_begin_with_a_digit(run: Run, pytester: pytest.Pytester) -> N
         ("shot.render('slope.toml', values={'height.gian': 1})", "*did you mean 'height.gain'"),
     ],
 )
-def test_a_mistake_is_reported_at_the_tests_own_line(
-    tests: Run, edit: Edit, call: str, sentence: str
-) -> None:
+def test_a_mistake_is_reported_at_the_tests_own_line(tests: Run, edit: Edit, call: str, message: str) -> None:
     edit("test_slope.py", 'shot.check(RAMP, "ramp", by="numpy")', call)
     result = tests("-k", "given", "--shots-update", "--tb=short")
     result.assert_outcomes(failed=1, deselected=1)
-    result.stdout.fnmatch_lines(["test_slope.py:12: in test_given", f"E   *{sentence}*"])
+    result.stdout.fnmatch_lines(["test_slope.py:12: in test_given", f"E   *{message}*"])
 
 
 def test_two_tests_may_not_write_one_reference_differently(tests: Run, edit: Edit) -> None:

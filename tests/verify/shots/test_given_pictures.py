@@ -194,7 +194,7 @@ def test_twice(shot):
 
 
 @pytest.mark.parametrize(
-    ("first", "other", "sentence"),
+    ("first", "other", "message"),
     [
         ("'Dawn'", "'dawn'", "the same file as 'dawn' on macOS and Windows"),
         ("'dawn'", "", "test_sea.py::test_1 has a picture of that name, 'dawn'"),
@@ -204,7 +204,7 @@ def test_twice(shot):
 )
 @pytest.mark.parametrize("workers", ["0", pytest.param("2", marks=pytest.mark.slow)])
 def test_two_tests_may_not_have_one_name(
-    run: Run, pytester: pytest.Pytester, first: str, other: str, sentence: str, workers: str
+    run: Run, pytester: pytest.Pytester, first: str, other: str, message: str, workers: str
 ) -> None:
     """Also in processes of their own: the second waits for the first one's claim, and no longer."""
     name = "dawn" if not other else "2"
@@ -222,7 +222,7 @@ def test_{name}(shot):
     extra = ("-n", workers, "--dist", "load") if workers != "0" else ()
     result = run("--shots-update", *extra)
     result.assert_outcomes(passed=1, failed=1)
-    result.stdout.fnmatch_lines([f"*{sentence}*"])
+    result.stdout.fnmatch_lines([f"*{message}*"])
     (written,) = Path("screenshots").rglob("*.png")
     assert read_png(written)[0][0, 0, 0] == 0  # the first one's
 

@@ -61,7 +61,7 @@ def reference(pixels: np.ndarray, fingerprint: Fingerprint, name: str = "dawn.pn
 def by(actual: np.ndarray, drawn_by: Fingerprint, expected: np.ndarray = BASE, **wrong: str) -> Judgement:
     judgement, _ = judge(actual, OURS, [reference(expected, drawn_by)], **wrong)
     assert judgement.word in WORDS
-    assert judgement.sentence.startswith(judgement.word)
+    assert judgement.message.startswith(judgement.word)
     broken = judgement.word in ("nan", "gl-error")
     assert judgement.ok == (judgement.word == "same") == judgement.comparison.ok or broken
     return judgement
@@ -111,7 +111,7 @@ def test_a_tier_lets_pass_what_it_may_in_every_channel(
         over = judgement.comparison.over
         assert over == len(places)
         limits = {"differs": "3 may" if abs(step) > 3 else "0.5 % may be", "crowded": f"at most {CROWD} may"}
-        assert limits.get(word, "another build") in judgement.sentence
+        assert limits.get(word, "another build") in judgement.message
         if places[0] == block(1)[0]:
             assert judgement.crowd is not None and judgement.crowd.count == over
 
@@ -124,7 +124,7 @@ def test_a_crowd_is_found_wherever_it_lies(x: int, y: int) -> None:
     left, top = judgement.crowd.place
     assert left <= x and x + 8 <= left + 32
     assert top <= y and y + 7 <= top + 32
-    assert f"x = {left}, y = {top}" in judgement.sentence
+    assert f"x = {left}, y = {top}" in judgement.message
 
 
 def test_levels_of_one_do_not_crowd() -> None:
@@ -206,8 +206,8 @@ def test_other_renderer_passes_on_structure_and_reports_it(name: str) -> None:
     judgement = by_eye(softened(base), base)
     assert judgement.comparison.most > 20
     assert (judgement.word, judgement.tier) == ("same", OTHER_RENDERER)
-    assert judgement.sentence.startswith("same in structure: ")
-    assert STRUCTURE_ONLY in judgement.sentence
+    assert judgement.message.startswith("same in structure: ")
+    assert STRUCTURE_ONLY in judgement.message
     assert any("renderer" in line for line in judgement.differences)
 
 
@@ -243,7 +243,7 @@ def test_structural_defects_fail_on_another_renderer(defect: str) -> None:
     judgement = by_eye(np.ascontiguousarray(DEFECTS[defect](base)), base)
     assert (judgement.word, judgement.tier) == ("structure", OTHER_RENDERER)
     assert judgement.perceived is not None
-    assert judgement.sentence.startswith("structure: FLIP ")
+    assert judgement.message.startswith("structure: FLIP ")
 
 
 def test_other_renderer_within_one_level_is_simply_same() -> None:
@@ -264,10 +264,10 @@ def test_other_renderer_reference_is_ignored_if_own_exists() -> None:
 @pytest.mark.parametrize("drawn_by", [OURS, NEWER])
 def test_gl_error_or_nan_fails_even_identical_picture(drawn_by: Fingerprint) -> None:
     judgement = by(BASE, drawn_by, not_finite="pass 'light': NaN at texel (1, 2)")
-    assert (judgement.word, judgement.sentence) == ("nan", "nan: pass 'light': NaN at texel (1, 2)")
+    assert (judgement.word, judgement.message) == ("nan", "nan: pass 'light': NaN at texel (1, 2)")
     both = by(BASE, drawn_by, not_finite="NaN", gl_error="GL_INVALID_OPERATION")
     assert both.word == "gl-error"
-    assert "GL_INVALID_OPERATION" in both.sentence
+    assert "GL_INVALID_OPERATION" in both.message
     blank = by(np.zeros_like(BASE), drawn_by, not_finite="NaN")
     assert blank.word == "nan"  # it says more than that nothing is to be seen
 
@@ -299,5 +299,5 @@ def test_some_words_are_those_of_every_tier(
 
 def test_a_reference_that_cannot_be_read_is_its_own_word() -> None:
     result = unreadable(BASE, OURS, "dawn.png: the file is damaged")
-    sentence = "unreadable: dawn.png: the file is damaged"
-    assert (result.word, result.ok, result.sentence) == ("unreadable", False, sentence)
+    message = "unreadable: dawn.png: the file is damaged"
+    assert (result.word, result.ok, result.message) == ("unreadable", False, message)

@@ -34,8 +34,8 @@ def headline() -> str:
     return (REPORT / "index.html").read_text().partition("<title>")[2].partition("</title>")[0]
 
 
-def sentence(name: str) -> str:
-    text: str = json.loads((REPORT / f"{name}.json").read_text())["sentence"]
+def message_of(name: str) -> str:
+    text: str = json.loads((REPORT / f"{name}.json").read_text())["message"]
     return text
 
 
@@ -96,7 +96,7 @@ def test_of_two_tests_that_check_one_name_what_failed_stays(run: Run, first: str
     assert words() == {"test_x.py/ramp": "differs"}
     Path("test_x.py").write_text(test.format("a", "0.5 * ") + test.format("b", "0.6 * "))
     run().assert_outcomes(failed=2)
-    assert sentence("test_x.py/ramp").endswith("; test_x.py::test_a failed as well")
+    assert message_of("test_x.py/ramp").endswith("; test_x.py::test_a failed as well")
     Path("test_x.py").write_text(test.format("a", "") + test.format("b", ""))
     run().assert_outcomes(passed=2)
     assert words() == {"test_x.py/ramp": "same"}
@@ -108,7 +108,7 @@ def test_unloadable_sketch_stays_on_page_until_it_loads(accepted: Run, edit: Edi
     edit("slope.toml", 'use = "./terrain"', 'use = "./terrian"')
     accepted("slope.toml").assert_outcomes(failed=1)
     assert words() == {"slope/plain": "same", "slope/bright": "same", "slope/sketch": "error"}
-    assert "1 of 3 shots failed" in headline() and "terrian" in sentence("slope/sketch")
+    assert "1 of 3 shots failed" in headline() and "terrian" in message_of("slope/sketch")
     edit("slope.toml", 'use = "./terrian"', 'use = "./terrain"')
     accepted("slope.toml").assert_outcomes(passed=3)
     assert words() == {"slope/plain": "same", "slope/bright": "same"}
@@ -120,7 +120,7 @@ def test_a_reference_in_vain_is_on_the_page_until_it_is_gone(accepted: Run) -> N
     shutil.copy(old.with_name("plain.png"), old)
     accepted("slope.toml").assert_outcomes(passed=2, failed=1)
     assert words()["slope/references"] == "error" and "1 of 3 shots failed" in headline()
-    assert "remove" in sentence("slope/references")
+    assert "remove" in message_of("slope/references")
     old.unlink()
     accepted("slope.toml").assert_outcomes(passed=3)
     assert "slope/references" not in words() and "All 2 shots passed" in headline()
@@ -181,7 +181,7 @@ def test_render_exception_is_reported_by_its_word_and_on_page(
     result.stdout.fnmatch_lines([f"E *Sandbox*: {word}: {message}", "test_x.py:6: *"])
     assert "playground/verify/shots" not in result.stdout.str().replace("shots-report", "").replace("\\", "/")
     assert words() == {"test_x.py/one": word}, "and not what an earlier run has found"
-    assert sentence("test_x.py/one") == message
+    assert message_of("test_x.py/one") == message
     ends.clear()
     run("-k", "one").assert_outcomes(passed=1, deselected=1)
     assert words() == {"test_x.py/one": "same"} and "1 shot passed" in headline()

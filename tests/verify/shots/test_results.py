@@ -30,7 +30,7 @@ FULL = record_of(
         sketch="hills & dales",
         shot="dawn",
         word="differs",
-        sentence="max difference 12 of 255, at x = 3, y = 1 from the top left",
+        message="max difference 12 of 255, at x = 3, y = 1 from the top left",
         renderer="llvmpipe",
         tier="same build",
         tolerance="noise, 8 of 255 at 100 % of the pixels (grain)",
@@ -73,13 +73,13 @@ OTHER = replace(FULL, folder="hills & dales-1a2b3c4d")
 
 @pytest.mark.parametrize(
     "record",
-    [FULL, OTHER, Record(sketch="a", shot="b", word="same", sentence="every pixel")],
+    [FULL, OTHER, Record(sketch="a", shot="b", word="same", message="every pixel")],
     ids=["full", "in a folder of its own", "bare"],
 )
 def test_a_record_comes_back_as_it_was(record: Record) -> None:
     text = to_json(record)
     assert from_json(text) == record
-    assert json.loads(text)["format"] == 2
+    assert json.loads(text)["format"] == 3
 
 
 def test_a_result_is_there_with_its_pictures_and_again_without(tmp_path: Path) -> None:
@@ -112,7 +112,7 @@ def test_new_results_folder_is_git_ignored_existing_one_is_not(tmp_path: Path) -
 def test_results_come_by_sketch_and_shot(tmp_path: Path) -> None:
     for name in ("b/z", "b/a", "a/m"):
         sketch, shot = name.split("/")
-        write_result(tmp_path, Record(sketch=sketch, shot=shot, word="same", sentence="every pixel"), {})
+        write_result(tmp_path, Record(sketch=sketch, shot=shot, word="same", message="every pixel"), {})
     assert [record.name for record in read_results(tmp_path)] == ["a/m", "b/a", "b/z"]
 
 

@@ -58,10 +58,8 @@ def test_the_first_frame_that_fails_is_named_with_its_time(
     result.stdout.fnmatch_lines(["test_sun.py/given: blank: frame 2 of 2, at 2 s: all 5 × 4 *"])
     result = run("test_sun.py", "-k", "drawn")
     result.assert_outcomes(failed=1, deselected=1)
-    sentence = (
-        "test_sun.py/sunrise: differs: frame 2 of 3, at 0.5 s: max difference *; 2 of the 3 frames fail"
-    )
-    result.stdout.fnmatch_lines([sentence])
+    message = "test_sun.py/sunrise: differs: frame 2 of 3, at 0.5 s: max difference *; 2 of the 3 frames fail"
+    result.stdout.fnmatch_lines([message])
     numbers = read_result(Path("shots-report/test_sun.py/sunrise.json")).numbers
     # Of 3 frames of 32 × 16, without the fourth cell of the strip.
     assert numbers[FRAMES] == 3

@@ -63,7 +63,7 @@ def taken(pixels: np.ndarray, **more: str) -> RenderedShot:
 def checked(case: ShotCase, pixels: np.ndarray, renderer: ContextInfo, **more: str) -> Outcome:
     outcome = check(case, taken(pixels, **more), renderer)
     assert outcome.word in WORDS
-    assert outcome.sentence.startswith(outcome.word)
+    assert outcome.message.startswith(outcome.word)
     assert outcome.ok is (outcome.word == "same")
     return outcome
 
@@ -149,7 +149,7 @@ def test_one_that_cannot_be_read_is_never_passed_over(
     path.with_name(damaged).write_bytes(b"no picture")
     result = checked(case, smooth(), renderer)
     assert (result.word, result.path.name, result.reference) == ("unreadable", damaged, None)
-    assert damaged in result.sentence
+    assert damaged in result.message
 
 
 # ── taking ───────────────────────────────────────────────────────────────────

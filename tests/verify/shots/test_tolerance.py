@@ -57,9 +57,9 @@ def test_noise_passes_by_its_tier_and_fails_without(seed: int) -> None:
     actual, expected = noisy(land(), 4, seed), noisy(land(), 4, seed + 100)
     result = judged(actual, because("noise"), expected)
     assert result.ok and result.tolerated
-    assert result.sentence.startswith("same, by the tolerance: max difference 8 of 255")
+    assert result.message.startswith("same, by the tolerance: max difference 8 of 255")
     assert judged(actual, None, expected).word == "differs"
-    assert judged(noisy(land(), 9, seed), because("noise")).sentence.endswith("the tolerance allows 8")
+    assert judged(noisy(land(), 9, seed), because("noise")).message.endswith("the tolerance allows 8")
 
 
 def test_single_pixels_that_fall_the_other_way_pass_as_edges() -> None:
@@ -70,7 +70,7 @@ def test_single_pixels_that_fall_the_other_way_pass_as_edges() -> None:
     assert judged(actual, because("edges")).ok
     assert not judged(actual, because("rounding")).ok
     actual[rows + 1, columns, :3] -= 40
-    assert judged(actual, because("edges")).sentence.endswith("the tolerance allows 0.5 %")
+    assert judged(actual, because("edges")).message.endswith("the tolerance allows 0.5 %")
 
 
 def in_part() -> Picture:
@@ -107,12 +107,12 @@ def test_no_tolerance_lets_a_change_of_what_is_shown_pass(broken: Picture, toler
 def test_a_shadow_that_is_lost_under_noise_fails() -> None:
     """The sum of its differences over a window stays, where that of the noise does not."""
     result = judged(noisy(land(shadow=False), 8), ANYTHING)
-    assert result.word == "crowded" and "no tolerance lets pass" in result.sentence
+    assert result.word == "crowded" and "no tolerance lets pass" in result.message
 
 
 def test_a_tolerance_that_is_not_needed_is_named() -> None:
     result = judged(land(), because("noise"))
-    assert result.ok and not result.tolerated and result.sentence.endswith("; the tolerance is not needed")
+    assert result.ok and not result.tolerated and result.message.endswith("; the tolerance is not needed")
 
 
 # ── masks ────────────────────────────────────────────────────────────────────
@@ -124,10 +124,10 @@ def test_what_is_masked_counts_as_equal_and_the_rest_in_full() -> None:
     reference = Reference(Path(), land(), OURS.texts())
     mask = mask_of([(0, 0, 20, 10)], SIZE[::-1], Path())
     result = judge(actual, OURS, [reference], rule=Rule(mask=mask))[0]
-    assert result.ok and result.sentence.endswith("200 pixels (1.63 %) are masked")
+    assert result.ok and result.message.endswith("200 pixels (1.63 %) are masked")
     actual[50, 50, 0] += 9
     result = judge(actual, OURS, [reference], rule=Rule(mask=mask))[0]
-    assert f"1 of {SIZE[0] * SIZE[1] - 200} pixels" in result.sentence
+    assert f"1 of {SIZE[0] * SIZE[1] - 200} pixels" in result.message
     assert result.word == "differs" and result.comparison.position == (50, 50)
 
 
@@ -170,7 +170,7 @@ def test_a_sketchs_shot_has_a_tolerance_and_a_mask(accepted: Run, edit: Edit) ->
         "height",
     )
     # x / 32 is more than half from x = 17 on; with the rectangle that is 4 + 15 of the 32 columns.
-    assert left.sentence.endswith(f"{19 * 32} pixels (59.4 %) are masked")
+    assert left.message.endswith(f"{19 * 32} pixels (59.4 %) are masked")
     edit("slope.toml", "[0, 0, 4, 32]", "[0, 0, 32, 32]")
     result = accepted("slope.toml", "-k", "bright")
     result.assert_outcomes(failed=1, deselected=2)

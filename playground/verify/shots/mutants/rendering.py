@@ -155,8 +155,8 @@ def broken(mutant: Rendering, sketch: Sketch) -> Sketch:
         sketch = replace(sketch, graph=_with_steps(sketch.graph, mutant.steps))
     for path, source in mutant.wires:
         sketch = replace(sketch, graph=_rewired(sketch.graph, path, source, path))
-    for path, share in mutant.times:
-        sketch = _changed(sketch, path, factor=share)
+    for path, factor in mutant.times:
+        sketch = _changed(sketch, path, factor=factor)
     for path, more in mutant.plus:
         sketch = _changed(sketch, path, more=more)
     if mutant.values:

@@ -109,7 +109,7 @@ def _listed(*conditions: str) -> str:
 
 
 def processes(count: int, drivers: tuple[str, ...]) -> list[Process]:
-    """Choose so many drawings, by these drivers, and share them out among processes."""
+    """Choose so many drawings, by these drivers, and distribute them among processes."""
     randomness = random.Random(_SEED)
     result: list[Process] = []
     left = count
@@ -181,7 +181,7 @@ def redraw(
                 yield Redrawn(process, drawing, image, False)
                 continue
             judgement = judged(image, expected, renderer)[0]
-            refused = "" if judgement.ok else judgement.sentence
+            refused = "" if judgement.ok else judgement.message
             # The form of a kernel is part of what is drawn, and other drivers take other forms.
             same_forms = process.all_forms and drawing.driver == "auto"
             if not refused and same_forms and image.drawn != expected.drawn:

@@ -108,7 +108,7 @@ class MutantResult:
         return not self.tiers[tier].ok
 
     @property
-    def share(self) -> float:
+    def fraction(self) -> float:
         """Fraction of the pixels that differ by more than one level."""
         assert self.comparison is not None
         return self.comparison.over / (self.comparison.size[0] * self.comparison.size[1])
@@ -135,11 +135,11 @@ class MutantResult:
             "why_not": self.why_not,
             "unseen": self.unseen,
             "most": None if comparison is None else comparison.most,
-            "share_over_1": None if comparison is None else self.share,
+            "fraction_over_1": None if comparison is None else self.fraction,
             "flip_mean": None if self.perceived is None else self.perceived.mean,
             "flip_tile": None if self.perceived is None else self.perceived.tile,
             "tiers": {
-                tier: {"caught": not judgement.ok, "word": judgement.word, "sentence": judgement.sentence}
+                tier: {"caught": not judgement.ok, "word": judgement.word, "message": judgement.message}
                 for tier, judgement in zip(TIERS, self.tiers, strict=False)
             },
         }

@@ -31,7 +31,7 @@ class Meaning:
     """What a word of a result means."""
 
     label: str  # a few words, for a list
-    sentence: str  # what it is, and what to do
+    message: str  # what it is, and what to do
     broken: bool = False  # whether there is no picture to trust
 
 
@@ -181,7 +181,7 @@ def accept_command(record: Record, folder: str) -> str:
 def failure(record: Record, setting: ShotPageContext) -> Markup:
     """Return the article on a shot that failed."""
     heading = f"title-{anchor(record)}"
-    explained = (meaning(record.word).sentence, record.rules.catches)
+    explained = (meaning(record.word).message, record.rules.catches)
     return tag(
         "article",
         tag(
@@ -219,9 +219,9 @@ def failure(record: Record, setting: ShotPageContext) -> Markup:
 
 
 def _verdict(record: Record) -> str:
-    """Return the sentence without the word that it begins with, which the page shows next to it."""
-    sentence = record.sentence.removeprefix(f"{record.word}: ")
-    return sentence[:1].upper() + sentence[1:]
+    """Return the message without the word that it begins with, which the page shows next to it."""
+    message = record.message.removeprefix(f"{record.word}: ")
+    return message[:1].upper() + message[1:]
 
 
 def _pictures(record: Record, setting: ShotPageContext) -> Markup | None:
@@ -402,7 +402,7 @@ def passed_row(record: Record) -> Markup:
     rule = "".join(f"; {name.lower()}: {value}" for name, value in _rule(record) if value)
     cells = (
         record.rules.tier,
-        record.sentence + rule,
+        record.message + rule,
         f"{record.run.seconds:.2g} s" if record.run.seconds else "",
     )
     return tag("tr", tag("th", record.name, scope="row"), *(tag("td", cell) for cell in cells))
@@ -423,7 +423,7 @@ _REVIEW_KEYS = tag(
 
 
 def page(records: Sequence[Record], setting: ShotPageContext, notes: Sequence[str] = ()) -> str:
-    """Return the page as HTML; ``notes`` are sentences for its head, as on pictures left out."""
+    """Return the page as HTML; ``notes`` are messages for its head, as on pictures left out."""
     failed = [record for record in records if not record.ok]
     passed = [record for record in records if record.ok]
     style, script = _style(), _script(setting)
