@@ -1,6 +1,6 @@
-"""Measure rows: a texture, a frame, a process, a text in Python, or what the engine itself costs.
+"""Measure rows: a texture, a frame, a process, a comparison of pictures, or what the engine itself costs.
 
-Each measure is a function (row, room, size) that yields figures; rooms bring more by their ``measures``
+Each measure is a function (row, context, size) that yields figures; rooms bring more by their ``measures``
 module, whose ``MEASURES`` are functions (bench, options, size) that yield, for each figure, what follows
 the row's name, what follows its text, and (wall, processor) milliseconds of each run.
 
@@ -10,6 +10,7 @@ Run the rows that were chosen, one after the other, and say on what machine.
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import platform
@@ -27,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 import moderngl
+import numpy as np
 
 from playground._version import __version__
 from playground.engine.cache import VERSIONS
@@ -36,11 +38,9 @@ from playground.extras import install_command
 from playground.rooms import modules
 from playground.sketch.model import Camera, Sketch
 from playground.sketch.variants import any_variants
-from playground.verify.bench.peers import PeerSetup, made
-from playground.verify.bench.results import Figure, Results
-from playground.verify.bench.room import (
+from playground.verify.bench.context import (
+    BenchContext,
     Options,
-    Room,
     Run,
     Samples,
     alternate,
@@ -49,7 +49,12 @@ from playground.verify.bench.room import (
     processors,
     timed,
 )
+from playground.verify.bench.peers import PeerSetup, made
+from playground.verify.bench.results import Figure, Results
 from playground.verify.bench.rows import Row
+from playground.verify.shots.flip import flip
+from playground.verify.shots.judge import judge
+from playground.verify.shots.references import Fingerprint, Reference
 
 # ── calls of OpenGL, counted and timed ────────────────────────────────────────────────────────────
 
@@ -154,23 +159,23 @@ FORMS = ("auto", "fragment", "plain")
 """By compute shaders where there are any; without; and in the canonical form, without fast variants."""
 
 
-def _texture(row: Row, room: Room, size: int) -> Iterator[Figure]:
+def _texture(row: Row, context: BenchContext, size: int) -> Iterator[Figure]:
     """Yield the row's figure: each form of ours, each peer.
 
     Keys: ``texture``, what is read; ``seeds``, ``suns`` and ``nudged``, what is new each time (see
-    ``changing``); ``forms``; and those of the sketch (see ``Room.sketch``). ``part`` is a texture that it is
-    made of, whose own time is taken off: each round makes one of another terrain as well.
+    ``changing``); ``forms``; and those of the sketch (see ``BenchContext.sketch``). ``part`` is a texture
+    that it is made of, whose own time is taken off: each round makes one of another terrain as well.
     """
     options = row.options
-    sketch, texture = room.sketch(options, size), str(options["texture"])
+    sketch, texture = context.sketch(options, size), str(options["texture"])
     varied = any(any_variants(each.technique) for each in sketch.graph.passes if each.name != "height")
     runs: dict[str, Run] = {}
     parts: dict[str, Run] = {}
     for form in options.get("forms", FORMS):
         if form == "plain" and not varied:
             continue
-        engine = room.engine("auto" if form == "plain" else form)
-        change = changing(room, options)
+        engine = context.engine("auto" if form == "plain" else form)
+        change = changing(context, options)
 
         def run(of: str, plain: bool = form == "plain", engine=engine, change=change) -> None:  # type: ignore[no-untyped-def]
             engine.texture(change(sketch).plainly(plain), of)
@@ -179,10 +184,10 @@ def _texture(row: Row, room: Room, size: int) -> Iterator[Figure]:
         runs[form] = partial(run, texture)
         if "part" in options:
             parts[_part_of(form)] = partial(run, str(options["part"]))
-    setting = PeerSetup(room, size, options)
+    setting = PeerSetup(context, size, options)
     peers = [peer for options in row.peers if (peer := made(setting, options)) is not None]
     for name in setting.missing:
-        room.options.say(f"{name} is not installed, and is left out; {install_command('bench')}")
+        context.options.say(f"{name} is not installed, and is left out; {install_command('bench')}")
     ours = list(runs)
     runs |= parts
     for _ in range(VERSIONS):  # from then on textures are used again, as while one drags
@@ -190,7 +195,7 @@ def _texture(row: Row, room: Room, size: int) -> Iterator[Figure]:
             warm_up()
     runs |= {peer.name: peer.run for peer in peers}
     once = [peer.name for peer in peers if peer.once]
-    samples = alternate(runs, room.rounds, once=once)
+    samples = alternate(runs, context.rounds, once=once)
     yield Figure(
         row.suite,
         row.name,
@@ -215,7 +220,7 @@ def _part_of(form: str) -> str:
 TURN = 0.1  # degrees of the camera between two frames
 
 
-def _frame(row: Row, room: Room, size: int) -> Iterator[Figure]:
+def _frame(row: Row, context: BenchContext, size: int) -> Iterator[Figure]:
     """Yield the row's figure, frames of ``pixels``.
 
     Keys: ``draw``, the pass that is timed, else the whole picture; ``before``, the texture that it
@@ -226,15 +231,15 @@ def _frame(row: Row, room: Room, size: int) -> Iterator[Figure]:
     """
     options = row.options
     if "shader" in options:
-        room.written("screen.glsl", str(options["shader"]))
+        context.written("screen.glsl", str(options["shader"]))
     frames = {"": options}
     if "beside" in options:
         frames[options["beside"]["name"]] = {**options, "draw": "", "before": "", **options["beside"]}
     turning = iter(range(1, 10**9))
-    loaded = {name: room.sketch(options, size) for name, options in frames.items()}
+    loaded = {name: context.sketch(options, size) for name, options in frames.items()}
 
     def once(name: str, request: Any) -> tuple[float, float]:
-        engine, pixels = room.engine(), tuple(options["pixels"])
+        engine, pixels = context.engine(), tuple(options["pixels"])
         number = next(turning)
         moved, moment = _turned(loaded[name], request, number), number * float(request.get("advance", 0.0))
         if request.get("before"):
@@ -251,7 +256,7 @@ def _frame(row: Row, room: Room, size: int) -> Iterator[Figure]:
         return timed(draw)
 
     samples = {name: Samples() for name in frames}
-    for number in range(-2, room.rounds):
+    for number in range(-2, context.rounds):
         for name, frame in frames.items():
             wall, processor = once(name, frame)
             if number >= 0:
@@ -282,16 +287,16 @@ def spent():
         import resource
         own = resource.getrusage(resource.RUSAGE_SELF)
         most = own.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
-        found = [own.ru_utime + own.ru_stime, most]
+        times = [own.ru_utime + own.ru_stime, most]
     except ImportError:
         import time
-        found = [time.process_time(), 0]
-    print("spent", json.dumps(found), flush=True)
+        times = [time.process_time(), 0]
+    print("spent", json.dumps(times), flush=True)
 """
 _ENDS = "\nspent()\n"
 
 
-def _process(row: Row, room: Room, size: int) -> Iterator[Figure]:
+def _process(row: Row, context: BenchContext, size: int) -> Iterator[Figure]:
     """Yield the figure of a process that runs the Python text ``code``.
 
     In it, ``{out}`` is a file that it may write, ``{cache}`` a folder of all runs, and ``{size}`` the texels
@@ -299,7 +304,7 @@ def _process(row: Row, room: Room, size: int) -> Iterator[Figure]:
     before, untimed; ``takes`` is "time" or "memory"; ``cold`` gives each run an empty shader cache.
     """
     options = row.options
-    names = {"{out}": room.folder / "out.png", "{cache}": room.folder / row.name, "{size}": size}
+    names = {"{out}": context.folder / "out.png", "{cache}": context.folder / row.name, "{size}": size}
 
     def text_of(key: str) -> str:
         text = str(options[key])
@@ -307,16 +312,16 @@ def _process(row: Row, room: Room, size: int) -> Iterator[Figure]:
             text = text.replace(name, str(what))
         return text
 
-    usual = environment_of(room)
+    usual = environment_of(context)
     if "prepare" in options:
         spent(text_of("prepare"), usual)
     samples = Samples()
     memory = options.get("takes") == "memory"
-    rounds = 1 if memory else room.rounds
+    rounds = 1 if memory else context.rounds
     for number in range(0 if memory or options.get("cold") else -1, rounds):
         environment = dict(usual)
         if options.get("cold"):
-            cache = room.folder / f"cache{next(room.numbers)}"
+            cache = context.folder / f"cache{next(context.numbers)}"
             environment |= {"MESA_SHADER_CACHE_DIR": str(cache), "PLAYGROUND_CACHE": "0"}
         wall, seconds, most = spent(text_of("code"), environment)
         if number < 0:
@@ -325,15 +330,15 @@ def _process(row: Row, room: Room, size: int) -> Iterator[Figure]:
         if not memory:
             samples.processor.append(seconds * 1e3)
     if memory and not any(samples.wall):
-        room.options.say(f"{row.name}: this system does not say how much memory a process took")
+        context.options.say(f"{row.name}: this system does not say how much memory a process took")
         return
     unit = "MiB" if memory else "ms"
     yield Figure(row.suite, row.name, row.what, size, unit, row.goal, {"auto": samples})
 
 
-def environment_of(room: Room) -> dict[str, str]:
+def environment_of(context: BenchContext) -> dict[str, str]:
     """Return this process's environment, in which compiled modules are written and found."""
-    own = {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": str(room.folder / "modules")}
+    own = {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": str(context.folder / "modules")}
     return {**os.environ, **own}
 
 
@@ -366,26 +371,37 @@ def spent(code: str, environment: Mapping[str, str]) -> tuple[float, float, floa
     return wall, float(times[0]), float(times[1])
 
 
-# ── text in Python, in this process ──────────────────────────────────────────
+# ── comparing two pictures that differ by noise ──────────────────────────────
 
 
-def _python(row: Row, room: Room, size: int) -> Iterator[Figure]:
-    """Yield the figure of the Python text ``code``, which runs after ``setup`` has once.
+def _comparison(row: Row, context: BenchContext, size: int) -> Iterator[Figure]:
+    """Yield the figure of ``of``, for pictures of ``pixels``: "flip" or "judge".
 
-    ``beside`` is the peer: its ``name``, its ``code``, and its own ``setup`` after that of the row, which may
-    import a library that is not installed.
+    ``alike``: the picture is the reference; ``beside``: FLIP's authors' own is the peer.
     """
-    options, runs = row.options, dict[str, Run]()
-    for each in (options, *([options["beside"]] if "beside" in options else [])):
-        names: dict[str, Any] = {"size": size}
+    width, height = row.options["pixels"]
+    rows, columns = np.indices((height, width), np.float32)
+    first = np.full((height, width, 4), 255, np.uint8)
+    for channel, (along, across) in enumerate(((97, 71), (53, 31), (11, 23))):
+        first[..., channel] = 127.0 + 120.0 * np.sin(columns / along) * np.cos(rows / across)
+    noise = np.random.default_rng(1).integers(-6, 7, (height, width, 3))
+    other = first.copy()
+    if not row.options.get("alike"):
+        other[..., :3] = np.clip(first[..., :3].astype(np.int16) + noise, 0, 255)
+    origin = Fingerprint(renderer="llvmpipe", size=f"{width}x{height}")
+    references = [Reference(Path("a.png"), first, origin.texts())]
+    runs: dict[str, Run] = {"auto": lambda: judge(other, origin, references)}
+    if row.options["of"] == "flip":
+        runs = {"auto": lambda: flip(first, other)}
+    if "beside" in row.options:
         try:
-            exec(options["setup"], names)
-            exec(each.get("setup", ""), names)
-        except ImportError as error:
-            room.options.say(f"{error.name} is not installed, and is left out")
-            continue
-        runs[each.get("name", "auto")] = partial(exec, compile(each["code"], row.name, "exec"), names)
-    samples = alternate(runs, room.rounds)
+            evaluate = importlib.import_module("flip_evaluator").evaluate
+        except ImportError:
+            context.options.say("flip-evaluator is not installed, and is left out")
+        else:
+            pair = [np.ascontiguousarray(p[..., :3], np.float32) / np.float32(255) for p in (first, other)]
+            runs["flip-evaluator"] = lambda: evaluate(*pair, "LDR")
+    samples = alternate(runs, context.rounds)
     own = {"auto": samples.pop("auto")}
     yield Figure(row.suite, row.name, row.what, size, "ms", row.goal, own, samples)
 
@@ -393,21 +409,21 @@ def _python(row: Row, room: Room, size: int) -> Iterator[Figure]:
 # ── the engine itself: Python a pass, a frame in which nothing has changed, calls of OpenGL ───────
 
 
-def _engine_cost(row: Row, room: Room, size: int) -> Iterator[Figure]:
+def _engine_cost(row: Row, context: BenchContext, size: int) -> Iterator[Figure]:
     """Yield the _engine_cost of ``of``: "passes", "unchanged" or "calls"."""
     of = {"passes": _passes, "unchanged": _unchanged, "calls": _calls}[row.options["of"]]
-    yield from of(row, room, size)
+    yield from of(row, context, size)
 
 
-def _passes(row: Row, room: Room, size: int) -> Iterator[Figure]:
+def _passes(row: Row, context: BenchContext, size: int) -> Iterator[Figure]:
     """Yield milliseconds of Python a pass of the loop ``loop``: without those inside calls of OpenGL."""
-    options, engine = row.options, room.engine()
-    sketch, texture = room.sketch(options, size), str(options["texture"])
-    change = changing(room, options)
+    options, engine = row.options, context.engine()
+    sketch, texture = context.sketch(options, size), str(options["texture"])
+    change = changing(context, options)
     plan = engine.plan(sketch, (64, 36), 0.0, None, texture)
     steps = _steps_of(plan, str(options["loop"]))
     samples = Samples()
-    for number in range(-2, room.rounds):
+    for number in range(-2, context.rounds):
         with timed_calls() as calls:
             wall, _ = timed(lambda: engine.texture(change(sketch), texture))
         if number >= 0:
@@ -421,42 +437,42 @@ def _steps_of(plan: Plan, path: str) -> int:
     return loop.repeat * len(loop.body)
 
 
-def _unchanged(row: Row, room: Room, size: int) -> Iterator[Figure]:
+def _unchanged(row: Row, context: BenchContext, size: int) -> Iterator[Figure]:
     """Yield the time of a frame in which only the camera has moved a pass that takes nothing, by passes.
 
     In a ``chain`` each reads the one before it, and the picture the last; otherwise it reads only the first.
     """
-    engine = room.engine()
+    engine = context.engine()
     for passes in row.options["counts"]:
-        sketch = unchanging(row, room, passes)
+        sketch = unchanging(row, context, passes)
 
         def run(sketch=sketch) -> None:  # type: ignore[no-untyped-def]
             look = sketch.camera  # turned further each time: else its picture would be known
-            moved = sketch.with_camera(replace(look, azimuth=look.azimuth + 0.1 * next(room.numbers)))
+            moved = sketch.with_camera(replace(look, azimuth=look.azimuth + 0.1 * next(context.numbers)))
             engine.draw(moved, size=(16, 9))
             engine.ctx.finish()
 
-        samples = alternate({"auto": run}, room.rounds, unmeasured=3)
+        samples = alternate({"auto": run}, context.rounds, unmeasured=3)
         name, what = f"{row.name}-{passes}", row.what.replace("N", str(passes))
         yield Figure(row.suite, name, what, 0, "ms", row.goal, samples)
 
 
-def unchanging(row: Row, room: Room, passes: int) -> Sketch:
+def unchanging(row: Row, context: BenchContext, passes: int) -> Sketch:
     """Return a sketch of so many passes of the kernel ``shader``, for the row's ``view`` of @."""
     chain, text = bool(row.options.get("chain")), ""
-    room.written("flat.glsl", str(row.options["shader"]))
+    context.written("flat.glsl", str(row.options["shader"]))
     for number in range(passes):
         text += f'[[pass]]\nname = "p{number}"\nuse = "./flat"\nsize = 4\n'
         if chain and number:
             text += f'inputs = {{ height = "p{number - 1}" }}\n'
     view = str(row.options["view"]).replace("@", f"p{passes - 1 if chain else 0}")
-    return room.sketch({**row.options, "passes": text + view}, 0)
+    return context.sketch({**row.options, "passes": text + view}, 0)
 
 
-def _calls(row: Row, room: Room, size: int) -> Iterator[Figure]:
+def _calls(row: Row, context: BenchContext, size: int) -> Iterator[Figure]:
     """Yield how often a frame in which the camera moves calls OpenGL, and how many bytes it moves."""
-    engine, pixels = room.engine(), tuple(row.options["pixels"])
-    sketch = room.sketch(row.options, size)
+    engine, pixels = context.engine(), tuple(row.options["pixels"])
+    sketch = context.sketch(row.options, size)
     for number in range(1, 4):
         look = sketch.camera
         moved = sketch.with_camera(replace(look, azimuth=look.azimuth + number))
@@ -468,24 +484,24 @@ def _calls(row: Row, room: Room, size: int) -> Iterator[Figure]:
         yield Figure(row.suite, name, what, size, "", row.goal, samples)
 
 
-MEASURES: dict[str, Callable[[Row, Room, int], Iterator[Figure]]] = {
+MEASURES: dict[str, Callable[[Row, BenchContext, int], Iterator[Figure]]] = {
+    "comparison": _comparison,
     "engine_cost": _engine_cost,
     "frame": _frame,
     "process": _process,
-    "python": _python,
     "texture": _texture,
 }
 
 
-def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
+def figures(row: Row, context: BenchContext, size: int) -> Iterator[Figure]:
     """Measure a row at a size; raise ``PlaygroundError`` for one that cannot be drawn."""
     if row.measure in MEASURES:
-        yield from MEASURES[row.measure](row, room, size)
+        yield from MEASURES[row.measure](row, context, size)
         return
     measure = next(
         module.MEASURES[row.measure] for module in modules("measures") if row.measure in module.MEASURES
     )
-    for suffix, what, times in measure(room, row.options, size):
+    for suffix, what, times in measure(context, row.options, size):
         samples = Samples([wall for wall, _ in times], [processor for _, processor in times])
         name = row.name + (suffix and f"-{suffix}")
         yield Figure(row.suite, name, row.what + what, size, "ms", row.goal, {"auto": samples})
@@ -515,10 +531,10 @@ def run(
     options.say = note
     date = datetime.now().astimezone().isoformat(timespec="seconds")
     results = Results(date, __version__, {}, options.rounds)
-    with Room(options) as room:
-        results.machine = machine(room)
+    with BenchContext(options) as context:
+        results.machine = machine(context)
         for row, size in planned(rows, sizes):
-            results.figures += figures(row, room, size)
+            results.figures += figures(row, context, size)
             ended()
     results.notes = notes
     return results
@@ -529,9 +545,9 @@ def planned(rows: Sequence[Row], sizes: Sequence[int]) -> list[tuple[Row, int]]:
     return [(row, size) for row in rows for size in (sizes if row.sized else (0,))]
 
 
-def machine(room: Room) -> dict[str, Any]:
+def machine(context: BenchContext) -> dict[str, Any]:
     """Return what figures depend on: renderer, processors, system, versions."""
-    info = room.engine().info
+    info = context.engine().info
     return {
         "renderer": info.renderer,
         "opengl": info.opengl,

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.verify.bench.room import Room, Run, changing, processors
+from playground.verify.bench.context import BenchContext, Run, changing, processors
 
 HERE = Path(__file__).resolve().parent
 SOURCES = ("thesis.c", "thesis_light.c")
@@ -40,7 +40,7 @@ class Peer:
 class PeerSetup:
     """What a peer is made for."""
 
-    room: Room
+    context: BenchContext
     size: int
     row: Mapping[str, Any]
     missing: list[str] = field(default_factory=list)  # libraries that are not installed
@@ -55,15 +55,17 @@ class PeerSetup:
 
     def thesis(self) -> Thesis | None:
         """Return the thesis's own methods; None where there is no compiler, which is said."""
-        thesis = _thesis_in(self.room.folder)
+        thesis = _thesis_in(self.context.folder)
         if thesis is None:
-            self.room.options.say("no C compiler (cc, gcc, clang) on PATH: the thesis's methods are left out")
+            self.context.options.say(
+                "no C compiler (cc, gcc, clang) on PATH: the thesis's methods are left out"
+            )
         return thesis
 
     def heights(self, ref: str = "height") -> NDArray[np.float32]:
         """Return the heights of the row's terrain in metres, rows from the south."""
-        sketch = self.room.sketch(self.row, self.size)
-        return self.room.engine().metres(sketch, ref)
+        sketch = self.context.sketch(self.row, self.size)
+        return self.context.engine().metres(sketch, ref)
 
 
 def _fast_noise_lite(to: PeerSetup, noise: str, octaves: int, lacunarity: float, gain: float) -> Peer | None:
@@ -101,7 +103,7 @@ def _scipy_fourier(to: PeerSetup, roughness: float) -> Peer | None:
     size, workers = to.size - to.size % 2, processors()
 
     def run() -> object:
-        grid = np.random.default_rng(to.room.seed()).random((size, size), np.float32)
+        grid = np.random.default_rng(to.context.seed()).random((size, size), np.float32)
         spectrum = fft.rfft2(grid, workers=workers)
         fy = fft.fftfreq(size, 1 / size).astype(np.float32)[:, None]
         fx = fft.rfftfreq(size, 1 / size).astype(np.float32)
@@ -118,7 +120,7 @@ def _numpy_diamond_square(to: PeerSetup, smoothing: float) -> Peer:
     size = to.size
 
     def run() -> object:
-        random = np.random.default_rng(to.room.seed())
+        random = np.random.default_rng(to.context.seed())
         terrain = np.zeros((size, size), np.float32)
         terrain[:: size - 1, :: size - 1] = 0.5
         spacing = size - 1
@@ -147,7 +149,7 @@ def _numpy_faults(to: PeerSetup, faults: int) -> Peer:
     size = to.size
 
     def run() -> object:
-        random = np.random.default_rng(to.room.seed())
+        random = np.random.default_rng(to.context.seed())
         along = np.linspace(0, 1, size, dtype=np.float32)
         terrain = np.zeros((size, size), np.float32)
         for k in range(faults):
@@ -233,7 +235,7 @@ def _thesis_terrain(to: PeerSetup, function: str, arguments: list[float | int]) 
     thesis = to.thesis()
     if thesis is None:
         return None
-    return Peer("the thesis's C", thesis.terrain(function, to.size, arguments, to.room.seed), alone=True)
+    return Peer("the thesis's C", thesis.terrain(function, to.size, arguments, to.context.seed), alone=True)
 
 
 def _thesis_light(
@@ -341,8 +343,8 @@ def _topocalc_horizons(to: PeerSetup, directions: int) -> Peer | None:
 def _ours(to: PeerSetup, name: str, **changed: Any) -> Peer:
     """Return another texture of our own: the row with some of its keys changed."""
     row = {**to.row, **changed}
-    room, engine = to.room, to.room.engine()
-    sketch, change, texture = room.sketch(row, to.size), changing(room, row), str(row["texture"])
+    context, engine = to.context, to.context.engine()
+    sketch, change, texture = context.sketch(row, to.size), changing(context, row), str(row["texture"])
 
     def run() -> None:
         engine.texture(change(sketch), texture)

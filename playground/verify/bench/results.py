@@ -18,7 +18,7 @@ from playground.errors import DataError
 from playground.files import read_regular, write_file
 from playground.json_text import read_json
 from playground.paths import shown
-from playground.verify.bench.room import Samples, quartiles
+from playground.verify.bench.context import Samples, quartiles
 from playground.verify.bench.rows import Goal
 
 # ── figures, and their file ──────────────────────────────────────────────────

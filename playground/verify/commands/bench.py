@@ -68,9 +68,9 @@ def bench(
     device: options.Device = None,
 ) -> None:
     """Time techniques, frames, starts and saves next to what else does the same."""
+    from playground.verify.bench.context import Options
     from playground.verify.bench.measures import planned, run
     from playground.verify.bench.results import changes, read, write
-    from playground.verify.bench.room import Options
     from playground.verify.bench.rows import chosen
 
     rows = chosen(names or ())

@@ -87,7 +87,7 @@ def add_check(node: pytest.Item) -> None:
 
 def fail_for_what_is_left(node: pytest.Item) -> None:
     """Fail now for the pictures that no one has been told of, or for none where the test ended well."""
-    message = _told(node)
+    message = _take_failures(node)
     if not message and node.stash.get(_ENDED_WELL, False) and not node.stash[_CHECKS]:
         message = _NOTHING_CHECKED
     if message:
@@ -101,7 +101,7 @@ def _may_be_checked_later(item: pytest.Item) -> bool:
     return any(FIXTURE in each.argnames for several in definitions.values() for each in several)
 
 
-def _told(node: pytest.Item) -> str:
+def _take_failures(node: pytest.Item) -> str:
     """Return the failures of a test, which are then told; "" for none."""
     failures = node.stash.get(_FAILURES, [])
     node.stash[_FAILURES] = []
@@ -276,14 +276,14 @@ class Checker:
                 raise
             skipped = f"\n\nthen the test was skipped: {reason}"
         except Exception as error:
-            if message := _told(item):
+            if message := _take_failures(item):
                 error.add_note(f"\nBefore that:\n{message}")
             raise
         except pytest.fail.Exception as failed:
-            if message := _told(item):
+            if message := _take_failures(item):
                 failed.msg = f"{failed.msg}\n\nBefore that:\n{message}"
             raise
-        if message := _told(item):
+        if message := _take_failures(item):
             pytest.fail(message + skipped, pytrace=False)
         if not item.stash.get(_CHECKS, True) and not _may_be_checked_later(item):
             item.user_properties.append((UNCHECKED, ""))

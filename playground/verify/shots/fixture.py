@@ -58,7 +58,7 @@ class ShotFixture:
         # By id of the frame, which is held so that its id stays its own.
         self._drawn: dict[int, tuple[Frame, ContextInfo, ShotCase]] = {}
         self._started = time.perf_counter()
-        self._begun = False
+        self._is_cleared = False
         expect_check(node)
 
     def render(
@@ -95,7 +95,7 @@ class ShotFixture:
                 steps=tuple({**dict(base_shot.steps), **(steps or {})}.items()),
             )
             renderer = self._checker.renderer(self._node, own)
-            self._begin(own)
+            self._forget_earlier(own)
             frame = self._checker.renderer_process.render(ShotCase(prepared, shot_wanted))
         except PlaygroundError as error:
             mistake = error
@@ -224,7 +224,7 @@ class ShotFixture:
 
     def _refuse_picture(self, case: ShotCase, error: DataError, start: float) -> bool:
         """Record for the test's end that what was given is no picture; return False."""
-        self._begin(case)
+        self._forget_earlier(case)
         self._names[one_spelling(case.shot.name)] = case.shot.name
         self._fail(self._checker.record_missing(self._node, case, error, start))
         return False
@@ -235,7 +235,7 @@ class ShotFixture:
         """Compare a picture with its reference, and record the failure for the test's end."""
         __tracebackhide__ = True
         name = case.shot.name
-        self._begin(case)
+        self._forget_earlier(case)
         self._names[one_spelling(name)] = name
         if refusal := self._checker.claim(self._node, case, info, own):
             raise ValueError(refusal)
@@ -300,10 +300,10 @@ class ShotFixture:
         file = self._node.path
         return ShotCase(Sketch(file.name, str(file), str(file.parent), Graph(file.name, str(file), ())), shot)
 
-    def _begin(self, case: ShotCase) -> None:
+    def _forget_earlier(self, case: ShotCase) -> None:
         """Remove, once, the records that this test has left in earlier runs."""
-        if not self._begun:
-            self._begun = True
+        if not self._is_cleared:
+            self._is_cleared = True
             self._checker.recorder.forget_earlier(self._node, case)
 
     def _renderer_of(

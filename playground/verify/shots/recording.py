@@ -72,7 +72,7 @@ class Recorder:
         comparison, perceived, reference = outcome.comparison, outcome.perceived, outcome.reference
         name, own = outcome.case.shot.name, outcome.renderer.slug
         frame = outcome.frame if isinstance(outcome.frame, RenderedShot) else None
-        record = self._begun(node, outcome.case, outcome.word, outcome.message, seconds)
+        record = self._new_record(node, outcome.case, outcome.word, outcome.message, seconds)
         try:
             references = digests_of(accepted(outcome.case.sketch, name, own))
         except DataError:  # the outcome says so, and whoever accepts it is told again
@@ -115,7 +115,7 @@ class Recorder:
     def record_none(self, node: pytest.Item, case: ShotCase, word: str, message: str, seconds: float) -> str:
         """Write the record of a shot of which there is no picture; returns what `record` does."""
         first, _, rest = message.partition("\n")
-        record = replace(self._begun(node, case, word, first, seconds), error=rest)
+        record = replace(self._new_record(node, case, word, first, seconds), error=rest)
         return self._write(node, case, record, {})
 
     def failed(self) -> frozenset[str]:
@@ -218,7 +218,9 @@ class Recorder:
             self._earlier[folder_name] = [r for r in there if r.run.name != self.run and r not in gone]
         return folder_name
 
-    def _begun(self, node: pytest.Item, case: ShotCase, word: str, message: str, seconds: float) -> Record:
+    def _new_record(
+        self, node: pytest.Item, case: ShotCase, word: str, message: str, seconds: float
+    ) -> Record:
         return Record(
             sketch=case.sketch.name,
             shot=case.shot.name,

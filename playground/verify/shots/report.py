@@ -129,14 +129,14 @@ URL = "SHOTS_PICTURES_URL"
 MAX_BYTES = 1_000_000  # of GitHub's 1 MiB, above which it shows nothing at all
 WIDTH = 200  # [CSS pixels] of a thumbnail
 
-Told = Mapping[str, str]
+ShotProperties = Mapping[str, str]
 """What a checked shot tells: see `playground.verify.shots.results`."""
 
 _SHOWN = (("expected", "Reference"), ("actual", "Now"), ("difference", "Difference × 16"))
 
 
 def summarise(
-    shots: Sequence[Told], folder: Path, url: str = "", environment: Mapping[str, str] | None = None
+    shots: Sequence[ShotProperties], folder: Path, url: str = "", environment: Mapping[str, str] | None = None
 ) -> str:
     """Append the summary to the file that ``GITHUB_STEP_SUMMARY`` names, if that is set.
 
@@ -159,7 +159,11 @@ def summarise(
 
 
 def text_of(
-    shots: Sequence[Told], folder: Path, url: str, environment: Mapping[str, str], room: int = MAX_BYTES
+    shots: Sequence[ShotProperties],
+    folder: Path,
+    url: str,
+    environment: Mapping[str, str],
+    room: int = MAX_BYTES,
 ) -> str:
     """Return the summary as Markdown, of at most ``room`` bytes."""
     failed = [shot for shot in shots if shot["shot.result"] != "same"]
@@ -197,7 +201,7 @@ def _where(folder: Path, shown: bool) -> str:
     return f"{more}The report is in `{folder.name}`; to accept pictures: `playground shots review{suffix}`"
 
 
-def _row(shot: Told, folder: Path, url: str, environment: Mapping[str, str]) -> str:
+def _row(shot: ShotProperties, folder: Path, url: str, environment: Mapping[str, str]) -> str:
     scores = [
         f"{name.removeprefix('shot.score.')}: {value}"
         for name, value in shot.items()
@@ -216,7 +220,7 @@ def _row(shot: Told, folder: Path, url: str, environment: Mapping[str, str]) -> 
     return "| " + " | ".join(cells) + " |"
 
 
-def _reference(shot: Told, environment: Mapping[str, str]) -> str:
+def _reference(shot: ShotProperties, environment: Mapping[str, str]) -> str:
     """Return where the reference is in the commit that is tested; "" where that is not known."""
     needed = [environment.get(f"GITHUB_{word}", "") for word in ("SERVER_URL", "REPOSITORY", "SHA")]
     workspace, reference = environment.get("GITHUB_WORKSPACE", ""), shot.get("shot.reference", "")

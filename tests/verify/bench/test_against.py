@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from playground.verify.bench.context import Samples
 from playground.verify.bench.results import Figure, Results, changes, read, write
-from playground.verify.bench.room import Samples
 from playground.verify.bench.rows import Goal
 
 NONE = Goal()

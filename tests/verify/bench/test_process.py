@@ -7,8 +7,8 @@ import os
 import pytest
 
 from playground.errors import PlaygroundError
+from playground.verify.bench.context import BenchContext, Options
 from playground.verify.bench.measures import environment_of, spent
-from playground.verify.bench.room import Options, Room
 
 PAUSE = "import time\ntime.sleep(0.6)\n"
 
@@ -24,9 +24,9 @@ def test_modules_are_compiled_once_whatever_the_environment_says(monkeypatch, tm
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
     (tmp_path / "slow_one.py").write_text("value = 1\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    with Room(Options()) as room:
-        spent("import slow_one", environment_of(room))
-        assert list((room.folder / "modules").rglob("slow_one.*.pyc"))
+    with BenchContext(Options()) as context:
+        spent("import slow_one", environment_of(context))
+        assert list((context.folder / "modules").rglob("slow_one.*.pyc"))
 
 
 def test_what_fails_is_told():

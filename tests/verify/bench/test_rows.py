@@ -9,9 +9,9 @@ import pytest
 
 from playground.errors import ParameterError
 from playground.rooms import modules
+from playground.verify.bench.context import BenchContext, Options
 from playground.verify.bench.measures import BYTES, MEASURES, counted, run, timed_calls, unchanging
 from playground.verify.bench.peers import PEERS
-from playground.verify.bench.room import Options, Room
 from playground.verify.bench.rows import FOLDER, chosen, suites
 
 ROWS = {row.name: row for row in chosen(())}
@@ -37,7 +37,7 @@ def test_rows_are_chosen_by_suite_by_name_and_by_pattern():
 @pytest.mark.parametrize("name", ROWS)
 def test_its_measure_and_its_peers_are_known(name):
     row = ROWS[name]
-    assert row.measure in {*MEASURES, *(each for room in modules("measures") for each in room.MEASURES)}
+    assert row.measure in {*MEASURES, *(each for context in modules("measures") for each in context.MEASURES)}
     assert {peer["peer"] for peer in row.peers} <= PEERS.keys()
     goal = row.goal
     assert not goal.times or goal.than
@@ -46,26 +46,26 @@ def test_its_measure_and_its_peers_are_known(name):
 @pytest.mark.parametrize("name", [row.name for row in ROWS.values() if row.measure == "texture"])
 def test_its_sketch_has_the_texture_and_what_changes(name):
     row = ROWS[name]
-    with Room(Options()) as room:
-        sketch = room.sketch(row.options, 65)
+    with BenchContext(Options()) as context:
+        sketch = context.sketch(row.options, 65)
         changed = {path: 3 for path in row.options.get("seeds", ())}
         changed |= dict.fromkeys(row.options.get("suns", ()), (120.0, 30.0))
         changed |= dict.fromkeys(row.options.get("nudged", ()), row.options.get("around", 0.5) + 0.01)
         assert changed, "each run is to make something new"
         expected = str(row.options["texture"])
-        plan = room.engine().plan(sketch.with_values(changed), (64, 36), 0.0, None, expected)
+        plan = context.engine().plan(sketch.with_values(changed), (64, 36), 0.0, None, expected)
         plan.flat.ref(expected, "sketch")
         if "part" in row.options:
             assert row.options["part"] != expected
-            engine = room.engine()
+            engine = context.engine()
             engine.texture(sketch.with_values(changed), row.options["part"])
             assert "a" not in engine.record.ran, "the part is made without what is measured"
 
 
 @pytest.mark.parametrize(("name", "read"), [("unchanged", 1), ("unchanged_chain", 7)])
 def test_unchanged_picture_reads_one_pass_or_whole_chain(name, read):
-    with Room(Options()) as room:
-        engine, sketch = room.engine(), unchanging(ROWS[name], room, 7)
+    with BenchContext(Options()) as context:
+        engine, sketch = context.engine(), unchanging(ROWS[name], context, 7)
         engine.draw(sketch, size=(16, 9))
         assert sum(path.startswith("p") for path in engine.record.ran) == read
         turned = sketch.with_camera(replace(sketch.camera, azimuth=sketch.camera.azimuth + 1.0))
@@ -92,7 +92,7 @@ def test_measured_row_has_every_form_and_reports_missing_peer(monkeypatch):
     assert results.machine["renderer"] and results.machine["processors"] >= 1
 
 
-def test_rows_of_rooms_and_of_python_texts_are_measured():
+def test_rows_of_rooms_and_of_comparisons_are_measured():
     modes = [row for name in ("stroke", "judge_same") if name in ROWS for row in chosen([name])]
     figures = run(modes, [33], Options(rounds=2)).figures
     assert {figure.name.partition("-")[0] for figure in figures} == {row.name for row in modes}

@@ -7,8 +7,8 @@ import time
 import numpy as np
 import pytest
 
+from playground.verify.bench.context import Samples, alternate, beyond
 from playground.verify.bench.results import Figure, Results, growth
-from playground.verify.bench.room import Samples, alternate, beyond
 from playground.verify.bench.rows import Goal
 
 

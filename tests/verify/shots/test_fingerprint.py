@@ -99,7 +99,7 @@ CARD = replace(OURS, renderer=NVIDIA.renderer, version=NVIDIA.version)
     ],
     ids=lambda case: case[1],
 )
-def test_another_build_is_known_by_its_parts_and_silence_is_no_excuse(
+def test_another_build_is_known_by_each_of_its_parts(
     ours: Fingerprint, changes: dict[str, str], same_build: bool, said: list[str]
 ) -> None:
     other = replace(ours, **changes)

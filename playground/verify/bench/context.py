@@ -113,7 +113,7 @@ class Options:
     say: Callable[[str], None] = lambda _: None  # told what is left out, and why
 
 
-class Room:
+class BenchContext:
     """Engines of both drivers on one context, opened when they are first asked for."""
 
     def __init__(self, options: Options) -> None:
@@ -127,7 +127,7 @@ class Room:
         """How many runs count."""
         return self.options.rounds
 
-    def __enter__(self) -> Room:
+    def __enter__(self) -> BenchContext:
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -178,7 +178,7 @@ class Room:
         return loaded.with_values(values) if values else loaded
 
 
-def changing(room: Room, options: Mapping[str, Any]) -> Callable[[Sketch], Sketch]:
+def changing(context: BenchContext, options: Mapping[str, Any]) -> Callable[[Sketch], Sketch]:
     """Return what gives a sketch new values for each run, of the paths in ``seeds`` and ``suns``.
 
     A seed is a whole number. A sun stands at ``elevation`` degrees, and elsewhere each time, or ``turn``
@@ -187,11 +187,11 @@ def changing(room: Room, options: Mapping[str, Any]) -> Callable[[Sketch], Sketc
     """
     seeds, suns = options.get("seeds", ()), options.get("suns", ())
     nudged = options.get("nudged", ())
-    own = next(room.numbers) * 1e-5
+    own = next(context.numbers) * 1e-5
     turns, steps = itertools.count(), itertools.count(1)
 
     def changed(sketch: Sketch) -> Sketch:
-        values: dict[str, Any] = {path: room.seed() for path in seeds}
+        values: dict[str, Any] = {path: context.seed() for path in seeds}
         if suns:
             azimuth = (20.0 + options.get("turn", SUN_TURNS) * next(turns)) % 360.0
             values |= dict.fromkeys(suns, (azimuth, float(options["elevation"]) + own))
