@@ -75,7 +75,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_ignore_collect(collection_path: Path) -> bool | None:
     """Leave out a file of tests that imports from a room that has been removed (``playground/rooms.py``)."""
-    if collection_path.suffix != ".py" or not collection_path.is_relative_to(ROOT / "tests"):
+    if (
+        collection_path.suffix != ".py"
+        or not collection_path.is_file()
+        or not collection_path.is_relative_to(ROOT / "tests")
+    ):
         return None
     names = set(ROOM_IMPORT.findall(collection_path.read_text("utf-8")))
     return True if names - {path.stem for path in (ROOT / "playground").iterdir()} else None

@@ -30,7 +30,6 @@ ROW = re.compile(r"^│ (\w+) {2,}", re.MULTILINE)
 NAMES = list(ROOMS)
 CORE_TESTS = (
     "sketch/test_load.py",
-    "sketch/test_pasted.py",
     "shader/test_outline.py",
     "data/test_files.py",
 )

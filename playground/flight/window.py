@@ -28,8 +28,7 @@ from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.record import Header, Moment, Record, Recorder
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
-from playground.studio.draw import ctrl_held, letters
-from playground.studio.draw import plate
+from playground.studio.draw import ctrl_held, letters, plate
 from playground.studio.interface import remembered_size
 from playground.studio.keys import pressed_sign
 from playground.studio.picture.full_screen import Painter

@@ -15,8 +15,8 @@ from playground.shader.source import read_source
 from playground.sketch.model import Camera
 
 from ..sketch_texts import passes
+from ..truth.surfaces import reflected
 from .test_scene import EXTENT, LOOK, PASSES, PLANE, RELIEF, SIZE, all_pixels, on_plane, rays
-from .test_water_surface import fresnel
 
 LEVEL = 90.0
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
@@ -173,7 +173,7 @@ def test_what_is_mirrored_is_lit_as_it_is_seen(any_engine, scene):
     wet = water[y, x, 3] == 3
     to_eye = np.array(eye.position) - water[y, x][wet][:, :3]
     cosine = to_eye[:, 2] / np.linalg.norm(to_eye, axis=1)
-    expected = light[wet] * fresnel(cosine)[:, None]
+    expected = light[wet] * reflected(cosine)[:, None]
     assert wet.sum() > 200
     share = mirrored[y, x][wet][:, :3] / expected
     assert np.median(share, axis=0) == pytest.approx(1.0, abs=0.1)  # rock is lumpy there
@@ -238,7 +238,7 @@ def mirrored_and_above(engine, make_sketch, cover):
         below = read(engine, sketch.with_camera(replace(look, elevation=18.0)), "watered.surface", size)
         _, ahead = rays(engine.record.plan, all_pixels(size))
         rise = ahead[..., 2] / np.linalg.norm(ahead, axis=-1)
-        below = below[..., :3] / fresnel(-rise)[..., None]
+        below = below[..., :3] / reflected(-rise)[..., None]
         up = replace(look, elevation=-18.0)
         pairs.append((below, read(engine, sketch.with_camera(up), "heaven", size)[::-1, :, :3]))
     return (np.stack(each) for each in zip(*pairs, strict=True))
