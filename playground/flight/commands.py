@@ -146,12 +146,14 @@ def read_radius(text: str) -> float | None:
 
 def _write(request: Request) -> None:
     """Write the pictures of a recorded flight into the folder, and print their paths."""
-    from playground.flight.flight import CACHE_BYTES, EVERY, count_frames, prepared, write_frames
+    from playground.files import make_folder
+    from playground.flight.flight import CACHE_BYTES, EVERY, count_frames, write_frames
     from playground.flight.record import read_record
 
     record = read_record(request.replay)
     sketch, _ = request.load(record)
-    target, every = prepared(request.frames), request.every or EVERY
+    target = make_folder(Path(request.frames).expanduser())
+    every = request.every or EVERY
     with busy(f"opening {sketch.name}"):
         engine = request.renderer.open_engine(driver=request.driver, cache_bytes=CACHE_BYTES)
     with engine, progress(f"flying over {sketch.name}", count_frames(record, every)) as done:

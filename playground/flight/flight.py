@@ -18,6 +18,7 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.engine.textures import read_picture
 from playground.errors import DataError, ParameterError
+from playground.files import make_folder
 from playground.flight.craft import CLEARANCE, LEVEL, Controls, Craft, stepped, through, turned
 from playground.flight.layout import Plot, plot_of
 from playground.flight.parts import Parts
@@ -293,7 +294,7 @@ def write_frames(
     """
     if every < 1:
         raise ParameterError(f"every {every} steps: expected a whole number from 1")
-    target = prepared(folder)
+    target = make_folder(Path(folder).expanduser())
     _refuse_others(target, {f"frame-{n * every:06d}.png" for n in range(count_frames(record, every))})
     written = []
     for flight in fly_again(engine, sketch, record, every=every):
@@ -316,15 +317,3 @@ def _refuse_others(folder: Path, expected: set[str]) -> None:
 def count_frames(record: Record, every: int) -> int:
     """Return how many pictures that gives."""
     return 1 + record.steps // every
-
-
-def prepared(folder: str | Path) -> Path:
-    """Return the folder, made if it is not there; raise ``DataError`` where it cannot be."""
-    path = Path(folder).expanduser()
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except FileExistsError:
-        raise DataError("is a file; expected a folder to write pictures into", file=str(folder)) from None
-    except OSError as error:
-        raise DataError(f"cannot be made a folder: {error.strerror}", file=str(folder)) from None
-    return path
