@@ -221,7 +221,7 @@ def test_the_contents_at_the_side_say_where_one_is(page):
     page.wait("!document.querySelector('.toc details').open")
 
 
-AXE = Path(build.__file__).resolve().parents[2] / "web/node_modules/axe-core/axe.min.js"
+AXE = Path(build.__file__).resolve().parents[2] / "publish/web/node_modules/axe-core/axe.min.js"
 
 
 @pytest.mark.skipif(not AXE.is_file(), reason="npm ci in playground/publish/web installs axe-core")
