@@ -150,7 +150,7 @@ def test_a_line_parts_the_corners_even_through_one_point_twice(on_gpu):
     assert set(np.sum(corners, axis=0)) <= {1, 2, 3}
 
 
-def test_values_are_cross_products_and_a_turned_line_raises_the_other_side(on_gpu):
+def test_values_are_cross_products_and_turned_lines_opposite(on_gpu):
     """Everywhere, and on the line itself, where half of these places are put."""
     rng = np.random.default_rng(2)
     first, second = (rng.integers(0, 4096, (20000, 2)).astype(np.int32) for _ in range(2))
