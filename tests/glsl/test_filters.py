@@ -66,7 +66,7 @@ def test_minmax_spans_0_to_1(engine, sketch_of, size, scale, base):
 
 
 @BOTH_TEXTS
-def test_max_leaves_0_and_what_is_below_and_none_looks_at_nothing(engine, sketch_of):
+def test_max_leaves_0_and_all_below_and_none_changes_nothing(engine, sketch_of):
     sketch = sketch_of(mode="max", scale=2.0)
     terrain = engine.read(sketch, "terrain").astype(np.float64)
     np.testing.assert_allclose(engine.read(sketch, "normal"), terrain / terrain.max(), rtol=1e-6, atol=1e-9)
