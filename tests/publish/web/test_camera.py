@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 import pytest
@@ -32,10 +31,6 @@ def random_scene(rng: np.random.Generator) -> Scene:
     return camera, extent, relief, (int(rng.integers(1, 3000)), int(rng.integers(1, 3000)))
 
 
-def given(camera: Camera) -> dict[str, Any]:
-    return asdict(camera)
-
-
 def bits(array: np.ndarray) -> list[int]:
     return array.astype(np.float32).view(np.uint32).ravel().tolist()
 
@@ -44,7 +39,7 @@ def bits(array: np.ndarray) -> list[int]:
 def test_matrices_are_the_same_to_the_last_bit(node: Node):
     rng = np.random.default_rng(0)
     scenes = [random_scene(rng) for _ in range(2_000)]
-    result = node.each("camera.js", "look", [(given(camera), *rest) for camera, *rest in scenes])
+    result = node.each("camera.js", "look", [(asdict(camera), *rest) for camera, *rest in scenes])
     for scene, eye in zip(scenes, result, strict=True):
         expected = cameras.look(*scene)
         assert bits(eye["clipFromWorld"]) == bits(expected.clip_from_world.T), scene
@@ -62,12 +57,12 @@ def test_a_camera_is_moved_as_the_windows_is(node: Node):
     }"""
     cases = [(random_scene(rng), *rng.uniform(-800, 800, 2)) for _ in range(200)]
     cases += [(random_scene(rng), *pair) for pair in ((0.0, 0.0), (360.0, 1.0), (-720.0, 1e9), (1e-9, 0.0))]
-    result = node.run(script, [((given(scene[0]), *scene[1:]), a, b) for scene, a, b in cases])
+    result = node.run(script, [((asdict(scene[0]), *scene[1:]), a, b) for scene, a, b in cases])
     for (scene, a, b), moved in zip(cases, result, strict=True):
         camera, eye = scene[0], cameras.look(*scene)
         expected = cameras.orbit(camera, a, b), cameras.zoom(camera, a, b), cameras.pan(camera, eye, a, b)
         for first, other in zip(moved, expected, strict=True):
-            target = given(other)
+            target = asdict(other)
             target["target"] = target["target"] and list(target["target"])
             assert first == target
 

@@ -129,7 +129,7 @@ float kernel(ivec2 texel) {
 """
 
 
-def test_a_kernel_that_only_desktops_compile_is_refused_at_its_line(tmp_path: Path):
+def test_desktop_only_line_of_a_kernel_is_refused(tmp_path: Path):
     (tmp_path / "terrain.glsl").write_text(LOOSE, "utf-8")
     (tmp_path / "loose.toml").write_text(f"format = 1\nsize = 33\n{map_of_height()}", "utf-8")
     with pytest.raises(ShaderError, match=r"terrain\.glsl:4.*written as `return pow\(steep, 2\.0\);`"):

@@ -102,10 +102,7 @@ def test_hints_are_python_s(node: Node):
         line for path in OTHERS.glob("*.txt") for line in path.read_text(encoding="utf-8").splitlines()
     }
     messages |= {line for log in logs().values() for line in log.splitlines()}
-    result = node.run(
-        "async (all, load) => { const { hint } = await load('complaints.js'); return all.map(hint); }",
-        sorted(messages),
-    )
+    result = node.each("complaints.js", "hint", [[message] for message in sorted(messages)])
     assert result == [hint(message) for message in sorted(messages)]
     assert len({sentence for sentence in result if sentence}) > 12
 
@@ -116,12 +113,9 @@ def test_likeness_is_difflib_s(node: Node):
     pick = random.Random(3)
     words = ["".join(pick.choices("abcd_", k=pick.randrange(1, 14))) for _ in range(600)]
     pairs = list(zip(words[::2], words[1::2], strict=True))
-    result = node.run(
-        "async (all, load) => { const { likeness } = await load('complaints.js');"
-        " return all.map(([a, b]) => likeness(a, b)); }",
-        pairs,
-    )
-    assert result == [SequenceMatcher(None, a, b).ratio() for a, b in pairs]
+    assert node.each("complaints.js", "likeness", pairs) == [
+        SequenceMatcher(None, a, b).ratio() for a, b in pairs
+    ]
 
 
 def test_a_page_knows_what_its_library_defines(node: Node):

@@ -143,8 +143,7 @@ def test_a_slider_reaches_its_ends_and_comes_back(node: Node):
 
 def test_tidied_numbers_are_pythons(node: Node):
     numbers = [0.37, 0.1, 1 / 3, 1e-30, 123456.789, -2.5, 0.0, 1e39, *RANDOM.normal(size=200).tolist()]
-    script = "async (n, load) => n.map((await load('numbers.js')).tidied)"
-    assert node.run(script, numbers) == [tidied(number) for number in numbers]
+    assert node.each("numbers.js", "tidied", [[n] for n in numbers]) == [tidied(n) for n in numbers]
 
 
 def test_colours_are_pythons(node: Node):
@@ -161,20 +160,16 @@ def test_colours_are_pythons(node: Node):
         assert raw == list(parse_hex(text, raw=True))
         assert back == raw_back == text
     lights = np.linspace(0, 1, 1001)
-    shown = node.run("async (n, load) => n.map((await load('numbers.js')).toShown)", lights.tolist())
-    np.testing.assert_allclose(shown, linear_to_srgb(lights), rtol=4e-16, atol=1e-16)
-    back = node.run("async (n, load) => n.map((await load('numbers.js')).toLinear)", lights.tolist())
-    np.testing.assert_allclose(back, srgb_to_linear(lights), rtol=4e-16, atol=1e-16)
+    for name, python in (("toShown", linear_to_srgb), ("toLinear", srgb_to_linear)):
+        result = node.each("numbers.js", name, lights[:, None].tolist())
+        np.testing.assert_allclose(result, python(lights), rtol=4e-16, atol=1e-16)
     mixed = RANDOM.uniform(-0.1, 1.1, (200, 4)).tolist()
-    script = (
-        "async (n, load) => { const { toHex } = await load('numbers.js'); return n.map((c) => toHex(c)); }"
-    )
-    assert node.run(script, mixed) == [to_hex(colour) for colour in mixed]
+    assert node.each("numbers.js", "toHex", [[c] for c in mixed]) == [to_hex(colour) for colour in mixed]
 
 
 @pytest.mark.parametrize("text", ["", "#12", "#1234", "#gggggg", "red", "#123456789", "123456"])
 def test_what_is_no_colour_is_none(node: Node, text: str):
-    assert node.run("async (t, load) => (await load('numbers.js')).fromHex(t)", text) is None
+    assert node.call("numbers.js", "fromHex", text) is None
 
 
 def test_values_as_text_are_what_python_reads(node: Node):
@@ -218,11 +213,11 @@ def test_values_out_of_range_are_refused_as_python_refuses_them(node: Node):
 
 def test_a_dome_is_the_windows(node: Node):
     places = RANDOM.uniform(-1.3, 1.3, (100, 2)).tolist()
-    script = "async (n, load) => { const { directionAt, dotOf } = await load('controls.js');"
-    script += " return n.map(([x, y]) => [directionAt(x, y), dotOf(...directionAt(x, y))]); }"
-    for position, (direction, dot) in zip(places, node.run(script, places), strict=True):
-        np.testing.assert_allclose(direction, dome.direction_at(*position), rtol=1e-12, atol=1e-12)
-        np.testing.assert_allclose(dot, dome.dot_of(*dome.direction_at(*position)), rtol=1e-12, atol=1e-12)
+    directions = [dome.direction_at(*place) for place in places]
+    close = {"rtol": 1e-12, "atol": 1e-12}
+    np.testing.assert_allclose(node.each("controls.js", "directionAt", places), directions, **close)
+    dots = [dome.dot_of(*direction) for direction in directions]
+    np.testing.assert_allclose(node.each("controls.js", "dotOf", directions), dots, **close)
 
 
 def test_page_gestures_move_camera_like_window_mouse(node: Node):
@@ -261,24 +256,20 @@ def test_a_narrow_room_opens_the_view_as_in_the_window(node: Node):
         ((960, 540), (960, 540)),
         ((800, 600), (10, 900)),
     ]
-    script = "async (n, load) => { const { fieldFor } = await load('camera.js');"
-    script += " return n.map(([wanted, room]) => fieldFor(40, wanted, room)); }"
-    assert node.run(script, rooms) == pytest.approx([field_for(40.0, *room) for room in rooms], rel=1e-12)
+    result = node.each("camera.js", "fieldFor", [(40, *room) for room in rooms])
+    assert result == pytest.approx([field_for(40.0, *room) for room in rooms], rel=1e-12)
 
 
 def test_a_drag_with_ctrl_moves_a_sun_as_in_the_window(node: Node):
-    drags = RANDOM.uniform((-10, -10, -3, -3), (370, 90, 3, 3), (50, 4)).tolist()
-    script = "async (n, load) => { const { sunMoved } = await load('camera.js');"
-    script += " return n.map(([a, e, across, up]) => sunMoved([a, e], across, up)); }"
-    expected = [list(turned_sun((a, e), across, up)) for a, e, across, up in drags]
-    np.testing.assert_allclose(node.run(script, drags), expected, atol=0.0100001)
+    drags = RANDOM.uniform((-10, -10, -3, -3), (370, 90, 3, 3), (50, 4))
+    cases = [((a, e), across, up) for a, e, across, up in drags.tolist()]
+    result = node.each("camera.js", "sunMoved", cases)
+    np.testing.assert_allclose(result, [turned_sun(*case) for case in cases], atol=0.0100001)
 
 
 def test_frames_of_time_are_the_windows(node: Node):
     times = [(t, by) for t in (0.0, 0.01, 1 / 30, 0.5, 3.99999, 7 / 30) for by in (-1, 1)]
-    script = "async (n, load) => { const { stepped } = await load('timeline.js');"
-    script += " return n.map(([time, by]) => stepped(time, by)); }"
-    assert node.run(script, times) == [stepped(time, by) for time, by in times]
+    assert node.each("timeline.js", "stepped", times) == [stepped(time, by) for time, by in times]
 
 
 # ── what a panel lists ───────────────────────────────────────────────────────
