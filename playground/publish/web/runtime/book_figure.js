@@ -183,7 +183,8 @@ export function makeSlider({ label, min, max, step, value, words, said, changed 
 /** Two pictures one over the other, and the line between. @param {HTMLElement} box
  *  @param {Object<string, string>} words */
 export function makeSwipe(box, words) {
-  const range = make("input", { type: "range", min: "0", max: "100", value: "50", "aria-label": words.swipe });
+  const range = make("input",
+    { type: "range", min: "0", max: "100", value: "50", "aria-label": words.swipe });
   const show = () => box.style.setProperty("--at", `${range.value}%`);
   range.oninput = show;
   show();
