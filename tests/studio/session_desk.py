@@ -124,7 +124,6 @@ class Harness:
     @property
     def name(self) -> str:
         """The sketch that is shown."""
-        assert self.session.shown is not None
         return Path(self.session.shown.file.file).parent.name
 
     @property
@@ -134,9 +133,7 @@ class Harness:
 
     @property
     def technique(self) -> str:
-        assert self.session.shown is not None
         spec = self.session.shown.base.graph.find("height")
-        assert spec is not None
         return spec.use
 
     @property

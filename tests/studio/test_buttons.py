@@ -49,7 +49,6 @@ def test_a_point_is_dragged_over_its_own_ranges(bare: Bare) -> None:
     bare.run_frames()
     bare.press(False)
     draft = bare.session.shown
-    assert draft is not None
     (result,) = (value for path, value in draft.edits.values if path == "a.place")
     assert result == (pytest.approx(0.5, abs=0.05), pytest.approx(3.0, abs=0.05))
 
@@ -72,7 +71,6 @@ def test_a_remote_presses_it_for_one_frame_and_sets_the_rest(bare: Bare) -> None
 
 def test_a_knob_goes_over_each_range_of_a_point(bare: Bare) -> None:
     sketch = bare.session.sketch
-    assert sketch is not None
     parameter = next(p for p in sketch.graph.passes[0].technique.parameters if p.name == "place")
     assert with_fraction(parameter, (0.0, 3.0), 0.25, 0) == (-0.5, 3.0)  # type: ignore[arg-type]
     assert with_fraction(parameter, (0.0, 3.0), 0.25, 1) == (0.0, 2.5)  # type: ignore[arg-type]

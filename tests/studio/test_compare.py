@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
-from playground.engine.sandbox import SandboxReport, TrySketch
+from playground.engine.sandbox import SandboxReport
 from playground.engine.textures import make_framebuffer, make_texture, read_picture, write_texture
 from playground.errors import SandboxTimeout
 from playground.sketch.assign import values_of
@@ -35,7 +35,7 @@ from playground.studio.session import Session
 from ..loading import load
 from ..sketch_texts import passes
 from .panel_desk import OpenBare
-from .session_desk import OpenSession
+from .session_desk import FakeSandbox, OpenSession
 
 TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
@@ -89,13 +89,11 @@ def draw_frame(session: Session, compare: Compare) -> NDArray[np.uint8]:
 
 
 def first(compare: Compare) -> NDArray[np.uint8]:
-    assert compare.picture is not None
     return read_picture(compare.picture)
 
 
 def drawn(engine: Engine, session: Session, level: float) -> NDArray[np.uint8]:
     """Return the picture of the files with a level, seen as the session sees it, drawn for itself."""
-    assert session.plan is not None
     sketch = load(session.path).with_values({"height.level": level}).with_camera(session.plan.sketch.camera)
     return engine.render(as_preview(sketch) if session.is_preview else sketch, size=SIZE).array
 
@@ -120,7 +118,6 @@ def test_a_follows_the_camera_and_the_size(session: Session, compare: Compare, a
     compare.keep()
     draw_frame(session, compare)
     session.drafts.set("height.level", 0.9)
-    assert session.sketch is not None
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=77.0))
     second = draw_frame(session, compare)
     assert compare.draws == 1 and (first(compare) != second).any()
@@ -139,7 +136,6 @@ def test_a_keeps_its_texts_when_the_files_change(
     draw_frame(session, compare)
     compare.keep()
     draw_frame(session, compare)
-    assert session.sketch is not None
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=200.0))
     draw_frame(session, compare)
     old = drawn(any_engine, session, 0.5)
@@ -163,7 +159,6 @@ def test_an_image_of_another_content_alone_is_another(
     write_png(file, np.full((2, 2, 4), 254, np.uint8))
     os.utime(file, ns=(stat.st_atime_ns, stat.st_mtime_ns))
     assert file.stat().st_size == stat.st_size
-    assert session.sketch is not None
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=10.0))
     draw_frame(session, compare)
     np.testing.assert_array_equal(first(compare), before)
@@ -179,7 +174,6 @@ def test_changed_image_leaves_kept_comparison_unchanged(
     write_png(folder / "mask.png", np.full((3, 3, 4), 100, np.uint8))
     session.redraw()
     draw_frame(session, compare)
-    assert session.sketch is not None
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=10.0))
     draw_frame(session, compare)
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=20.0))
@@ -213,7 +207,6 @@ def test_to_draw_a_leaves_the_engine_s_account_of_b(session: Session, compare: C
     compare.keep()
     draw_frame(session, compare)
     session.drafts.set("height.level", 0.9)
-    assert session.sketch is not None
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=50.0, elevation=60.0))
     picture = session.frame(SIZE)
     assert picture is not None
@@ -375,27 +368,12 @@ float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x); }
 MEMORY_SKETCH = "format = 1\nsize = 33\n" + passes(height="./terrain") + '[view]\nuse = "view/terrain"\n'
 
 
-class SlowSandbox:
-    """Answers when a test says so."""
-
-    def __init__(self) -> None:
-        self.requests: list[TrySketch] = []
-        self.answer: SandboxReport | None = None
-
-    def submit(self, request: TrySketch) -> None:
-        self.requests.append(request)
-
-    def poll(self) -> SandboxReport | None:
-        sandbox_report, self.answer = self.answer, None
-        return sandbox_report
-
-
 class Harness:
     """One window after another on a sketch."""
 
     def __init__(self, folder: Path, engine: Engine) -> None:
         self.folder, self.engine = folder, engine
-        self.sandbox = SlowSandbox()
+        self.sandbox = FakeSandbox()
         (folder / "terrain.glsl").write_text(MEMORY_TERRAIN, encoding="utf-8")
         (folder / "sketch.toml").write_text(MEMORY_SKETCH, encoding="utf-8")
         self.open()
@@ -405,7 +383,7 @@ class Harness:
         result, complaint = memory.read()
         assert complaint == ""
         self.found = result.compared
-        self.sandbox = SlowSandbox()
+        self.sandbox = FakeSandbox()
         self.session = Session(self.engine, self.folder, start=result.start, sandbox=self.sandbox)
         self.compare = Compare(self.session)
         self.autosave = Autosave(self.session, memory, result, compare=self.compare)
@@ -423,7 +401,6 @@ class Harness:
         self.autosave.look((900, 600))
 
     def first(self) -> NDArray[np.uint8]:
-        assert self.compare.picture is not None
         return read_picture(self.compare.picture)
 
     def close(self) -> None:
@@ -460,7 +437,6 @@ def test_a_is_there_again_once_it_has_been_tried(harness: Harness) -> None:
     harness.frame()
     compare = harness.compare
     assert (compare.mode, compare.split, compare.gain) == (Mode.DIFFERENCE, 0.25, 16.0)
-    assert harness.session.sketch is not None
     alone = harness.session.sketch.with_values({"height.level": 0.75})
     if harness.session.is_preview:
         harness.session.read()

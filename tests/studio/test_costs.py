@@ -235,7 +235,6 @@ class Harness:
         self.storing = SessionCaching(self.session, 2**26)
 
     def run_frames(self, seconds: float = 0.0) -> None:
-        assert self.session is not None
         self.time += seconds
         self.session.frame((40, 30))
         self.watch.update(self.session, held=False)
@@ -257,7 +256,6 @@ class Harness:
 
     @property
     def runs(self) -> dict[str, int]:
-        assert self.session is not None
         return dict(self.session.engine.runs)
 
 
@@ -286,7 +284,6 @@ def cached(tmp_path: Path) -> set[str]:
 
 def test_a_session_reopens_without_running_the_terrain(harness: Harness, tmp_path: Path) -> None:
     harness.run_frames()
-    assert harness.session is not None
     seen = harness.session.read()
     assert seen is not None and not cached(tmp_path)
     harness.rest()
@@ -316,7 +313,6 @@ def test_it_waits_for_the_picture_to_rest_and_says_for_how_long(harness: Harness
 
 def test_non_finite_terrain_is_not_cached(harness: Harness, tmp_path: Path) -> None:
     """The next session must name the pass that made it, and so must run it."""
-    assert harness.session is not None
     harness.run_frames()
     harness.session.drafts.set("low.level", -0.5)
     harness.rest()
@@ -335,7 +331,6 @@ def test_who_looks_at_every_pass_sees_every_pass(harness: Harness, tool: str) ->
     harness.rest()
     harness.open()
     harness.run_frames()
-    assert harness.session is not None
     engine = harness.session.engine
     assert "low" not in engine.record.results
     getattr(harness.bench.inspection, tool).on = True
@@ -353,7 +348,6 @@ def test_passes_that_fail_are_requested_once(harness: Harness, monkeypatch: pyte
     harness.rest()
     harness.open()
     harness.run_frames()
-    assert harness.session is not None
     tries = []
 
     def fails(*_: object, **__: object) -> None:
@@ -378,7 +372,6 @@ def test_an_edited_kernel_is_another_terrain(harness: Harness) -> None:
 def test_a_folder_that_cannot_be_written_is_reported_once(harness: Harness, tmp_path: Path) -> None:
     (tmp_path / "land").write_text("a file")
     harness.rest()
-    assert harness.session is not None
     harness.storing.close()
     harness.run_frames()
     harness.run_frames()
@@ -387,7 +380,6 @@ def test_a_folder_that_cannot_be_written_is_reported_once(harness: Harness, tmp_
 
 
 def test_without_a_limit_there_is_no_store(harness: Harness, tmp_path: Path) -> None:
-    assert harness.session is not None
     harness.session.engine.disk_caching = None
     harness.storing = SessionCaching(harness.session, 0)
     harness.rest()
@@ -400,7 +392,6 @@ def test_cached_terrain_is_identified_by_itself_not_its_texture(harness: Harness
     """What is read does not run, and its texture may be one that held another terrain before."""
     harness.run_frames()
     session = harness.session
-    assert session is not None
     engine, name = session.engine, "height:height"
     thumbnails = Thumbnails(session)
     thumbnails.refresh([name], now=0.0)

@@ -376,6 +376,45 @@ def test_failed_save_stays_error_when_technique_is_switched(harness: Harness) ->
     assert (harness.technique, harness.size) == ("./dunes", 17) and harness.session.error is None
 
 
+@pytest.mark.parametrize("how", ["fails", "is taken back"])
+def test_an_undo_that_does_not_come_is_no_longer_done(harness: Harness, how: str) -> None:
+    harness.drafts.choose("height", "./dunes")
+    harness.answer(GOOD)
+    harness.save("size = 9", "size = 17")
+    harness.answer(GOOD)
+    undo = harness.bench.undo
+    undo.undo()
+    assert undo.history.done == 0 and harness.drafts.testing
+    if how == "is taken back":
+        harness.drafts.choose("height", "./dunes")
+    harness.answer(BAD)
+    harness.frame()
+    assert undo.history.done == 1 and harness.technique == "./dunes"
+    undo.undo()
+    harness.answer(GOOD)
+    harness.frame()
+    assert undo.history.done == 0 and harness.technique == "./hills"
+
+
+def test_undo_and_redo_during_a_check(harness: Harness) -> None:
+    harness.drafts.choose("height", "./dunes")
+    harness.answer(GOOD)
+    harness.save("size = 9", "size = 17")
+    harness.answer(GOOD)
+    undo = harness.bench.undo
+    undo.undo()
+    assert harness.drafts.testing
+    undo.redo()
+    harness.answer(GOOD)
+    harness.frame()
+    assert harness.technique == "./dunes" and not harness.drafts.testing
+    undo.undo()
+    harness.save("size = 17", "size = 33")
+    harness.drafts.set(LEVEL, 0.5)
+    harness.answer(GOOD)
+    assert (harness.technique, harness.size, harness.level) == ("./hills", 33, 0.5)
+
+
 def test_texts_and_a_technique_that_come_together_are_both_shown(harness: Harness) -> None:
     """As a lesson's figure of the sketch that is open does it."""
     text = DESK_ADD.replace("uniform", "uniform float share = 0.5; //! slider(0, 1)\nuniform", 1)
@@ -563,12 +602,10 @@ def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> Non
     assert 'use = "./terrain"\nset = { level = 0.5 }\n' in desk.text and "azimuth = 12.35" in desk.text
     assert desk.text.startswith("format = 1  # ours\n")
     np.testing.assert_array_equal(desk.frame(), before)
-    assert desk.session.shown is not None
     assert desk.session.shown.edits.values == () and desk.session.shown.edits.camera is None
     assert "saved 1 value and the camera" in desk.messages and "is taken" not in desk.messages
     desk.bench.undo.undo()
     desk.frame()
-    assert desk.session.sketch is not None
     assert desk.session.sketch.camera == Camera() and desk.value("level") == 0.5
     desk.bench.undo.undo()
     assert desk.value("level") == 0.25, "what the file said before"
@@ -600,7 +637,6 @@ def test_values_by_hand_become_a_preset(desk: Desk) -> None:
     desk.session.drafts.set("height.level", 0.125)
     desk.bench.commands.save_as_preset(" low ")
     desk.frame()
-    assert desk.session.sketch is not None
     assert [p.name for p in desk.session.sketch.presets] == ["high", "low"]
     assert desk.session.sketch.presets[1].values == (("height.level", 0.125),)
     assert desk.value("level") == 0.125 and desk.session.shown is not None
@@ -812,7 +848,6 @@ def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
     session.drafts.set("view.channel", "red")
     answer(session, SandboxReport(True))
     assert session.error is None and session.draws > before and "other.npy" in read
-    assert session.shown is not None
     assert dict(session.shown.edits.values)["height.elevation"] == str(data_folder / "other.npy")
     assert "view.channel" in dict(session.shown.edits.values)
 

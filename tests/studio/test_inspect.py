@@ -183,7 +183,6 @@ def test_the_legend_has_the_colours_of_the_map(
         session.view.set_map(name, value)
     session.frame((64, 8))
     frame = session.read()
-    assert frame is not None
     with any_engine.borrowed():
         legend = np.array(colours_of(any_engine.ctx, ramp)) * 255
     assert len(legend) == STEPS == 64
@@ -247,10 +246,8 @@ def test_the_panel_counts_only_while_it_shows_it(bare: Bare) -> None:
     assert see.counter.latest is not None and see.counter.latest.high == 1.0
     bare.click("All but outliers")
     shown = bare.session.view.map
-    assert shown is not None
     assert 0.0 < float(str(shown.value("lowest"))) < 0.1 and 0.9 < float(str(shown.value("highest"))) < 1.0
     bare.click("All of it")
-    assert bare.session.view.map is not None
     assert (bare.session.view.map.value("lowest"), bare.session.view.map.value("highest")) == (0.0, 1.0)
     bare.click("Around the mean")
     assert bare.session.view.map.value("middle") == pytest.approx(0.5)
@@ -352,7 +349,6 @@ def test_every_pass_is_read_exactly_at_ray_terrain_hit(session: Session, inspect
     # The light is not in the picture where the view does not read it; then it is named as missing.
     runs, draws = dict(engine.runs), session.draws
     heights = whole["height:height"]
-    assert heights is not None
     met = 0
     for x in range(0, SIZE[0], 7):
         for y in range(0, SIZE[1], 5):
@@ -394,15 +390,12 @@ def test_in_a_map_it_is_the_texel_that_the_pixel_shows(session: Session, inspect
     session.view.set_map("shrunk", 1)
     for size in (SIZE, (41, 90), (130, 98)):
         picture = session.frame(size)
-        assert picture is not None
         colours = read_picture(picture)[::-1]
         whole = session.read_values("height:other")
-        assert whole is not None
         inside = 0
         for y in range(size[1]):
             for x in range(y % 4, size[0], 4):  # every row and every column
                 result = inspector.at((x, y), picture)
-                assert result is not None
                 if result.shown is None:
                     assert colours[y, x, :3].max() == 0
                     continue

@@ -236,7 +236,6 @@ def draw_frame(bench: Workbench) -> np.ndarray:
         bench.take_notes()
     assert bench.session.error is None
     frame = bench.session.read()
-    assert frame is not None
     return frame.array
 
 

@@ -98,7 +98,6 @@ def place(tmp_path: Path, any_engine: Engine):
 def picture(session: Session) -> np.ndarray:
     session.frame(SIZE)
     frame = session.read()
-    assert frame is not None
     return frame.array
 
 
@@ -419,7 +418,6 @@ class Machine:
     def picture(self) -> np.ndarray:
         self.session.frame(SIZE)
         frame = self.session.read()
-        assert frame is not None
         assert self.engine.ctx.error == "GL_NO_ERROR"
         return frame.array
 

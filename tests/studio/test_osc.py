@@ -49,7 +49,6 @@ class Surface:
 
     def taken(self) -> None:
         osc = self.remote.remotes.osc
-        assert osc is not None
         end = time.monotonic() + 10
         while not osc.waits:
             assert time.monotonic() < end
@@ -315,7 +314,6 @@ def test_wrong_options_are_one_sentence(words: list[str], capfd: pytest.CaptureF
 
 def test_closing_frees_the_port_and_ends_the_thread(remote: Harness):
     osc = remote.open(osc=("127.0.0.1", 0)).osc
-    assert osc is not None
     source = osc.source
     remote.remotes.close()
     assert remote.threads() == set() and source is not None

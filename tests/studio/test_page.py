@@ -28,7 +28,6 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 @pytest.fixture
 def page(remote: Harness, browser: Browser) -> Iterator[Browser]:
     server = remote.open(port=0, token=TOKEN).server
-    assert server is not None
     remote.during(lambda: browser.open(server.url))
     remote.during(lambda: browser.wait("document.querySelectorAll('.row').length > 8"))
     remote.during(lambda: browser.wait("document.getElementById('picture').naturalWidth === 48"))
@@ -142,7 +141,6 @@ def test_a_channel_keeps_the_name_that_the_shader_gives_it(
     remote = Harness(any_engine, toy)
     try:
         server = remote.open(port=0, token=TOKEN).server
-        assert server is not None
         remote.during(lambda: browser.open(server.url))
         remote.during(lambda: browser.wait("document.querySelectorAll('.row').length > 1"))
         heads = "return [...document.querySelectorAll('h2')].map(head => head.innerText)"

@@ -429,7 +429,6 @@ def test_a_mask_that_was_taken_away_is_written_again(session: Session, tmp_path:
     painting.press((0.5, 0.5))
     painting.release()
     layer = painting.layer
-    assert layer is not None
     assert painting.settle()
     layer.path.unlink()
     painting.press((0.4, 0.5))
@@ -508,7 +507,6 @@ def test_a_mask_that_others_paint_on_is_read_again(session: Session, tmp_path: P
     painting.press((0.45, 0.5))
     painting.release()
     layer = painting.layer
-    assert layer is not None
     weights(session)
     assert painting.settle()
     theirs = np.zeros((128, 128, 4), np.uint8)
@@ -531,7 +529,6 @@ def test_what_others_painted_since_is_not_taken_back(session: Session, tmp_path:
         painting.press((0.45, 0.5))
         painting.release()
     layer = painting.layer
-    assert layer is not None
     assert painting.settle()
     theirs = np.zeros((128, 128, 4), np.uint8)
     theirs[:, :, 2] = 255

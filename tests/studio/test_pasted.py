@@ -56,7 +56,6 @@ def said(bare: Bare) -> str:
 
 
 def level(bare: Bare) -> object:
-    assert bare.session.sketch is not None
     return dict(bare.session.sketch.overrides).get("height.level")
 
 

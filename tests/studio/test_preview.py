@@ -228,7 +228,6 @@ def compute(any_engine: Engine) -> None:
 
 def form(session: Session) -> object:
     """Return the form by which the last picture's shadow was made."""
-    assert session.plan is not None
     return next(
         step.values["form"]
         for step in session.plan.walk()
@@ -304,7 +303,6 @@ def test_what_it_is_compared_with_has_the_same_form(session: Session, any_engine
         picture = session.picture.texture
         assert picture is not None
         compare.follow(picture)
-        assert compare.picture is not None
         return read_picture(compare.picture)
 
     session.drafts.set("light.sun", LOW)
@@ -868,5 +866,4 @@ def test_the_window_opens_a_view_and_a_render_does_not(any_engine: Engine, tmp_p
     assert session.plan.sketch.camera == session.sketch.camera
     session.release()
     any_engine.render(load(find("low_detail")), size=(48, 48))
-    assert any_engine.record.plan is not None
     assert any_engine.record.plan.sketch.camera.field_of_view == 35.0

@@ -516,7 +516,6 @@ def test_texture_map_shows_non_finite_texels_in_magenta(finite: Finite) -> None:
     finite.bench.session.show(ref_of(first))
     assert finite.rest() == ["first", "second"], "what the map does not need is as it was"
     frame = finite.session.read()
-    assert frame is not None
     magenta = (frame.array[..., :3] == (255, 0, 255)).all(axis=2)
     assert 0 < magenta.sum() <= 16
     x, y = place_in(first, (0.0, 0.0, 40.0, 40.0))
@@ -656,7 +655,6 @@ def test_a_hole_that_the_view_makes_is_shown_too(
     finite.run_frames()
     assert finite.session.view.map is not None and finite.session.error is None and not finite.session.notes
     frame = finite.session.read()
-    assert frame is not None
     magenta = np.argwhere((frame.array[::-1, :, :3] == (255, 0, 255)).all(axis=2))
     assert magenta.tolist() == [[5, 7]], "the texel itself, in a picture of its size"
     finite.rest()

@@ -56,19 +56,16 @@ def fetched(url: str, body: Any = None, **headers: str) -> tuple[int, bytes]:
 
 def opened(remote: Harness) -> str:
     server = remote.open(port=0, token=TOKEN).server
-    assert server is not None
     return server.url
 
 
 def get(remote: Harness, path: str) -> Any:
-    assert remote.remotes.server is not None
     status, text = remote.during(lambda: fetched(remote.remotes.server.url + path))
     assert status == 200, text
     return json.loads(text)
 
 
 def do(remote: Harness, **wishes: Any) -> Any:
-    assert remote.remotes.server is not None
     status, text = remote.during(lambda: fetched(remote.remotes.server.url + "do", wishes))
     answer = json.loads(text)
     assert (status == 200) == ("error" not in answer)
@@ -141,7 +138,6 @@ def test_each_value_that_is_listed_can_be_set_again(remote: Harness):
 
 def test_values_are_set_with_the_checks_and_sentences_of_set(remote: Harness):
     opened(remote)
-    assert remote.session.sketch is not None
     good = {"height.level": 0.5, "height.sun": [90, 10], "height.kind": "sharp", "height.tint": "#ffffff"}
     do(remote, set=good)
     assert remote.value("height.level") == 0.5 and remote.value("height.sun") == (90.0, 10.0)
@@ -208,13 +204,11 @@ def test_the_picture_is_the_windows_or_one_of_a_size(remote: Harness):
         return np.asarray(Image.open(io.BytesIO(data))) if status == 200 else json.loads(data)["error"]
 
     own = remote.session.read()
-    assert own is not None
     np.testing.assert_array_equal(picture(), own.array)
     assert picture("?width=24").shape[:2] == (SIZE[1] // 2, 24)
     assert picture("?width=4000").shape[:2] == SIZE[::-1], "it is not enlarged"
     drawn = picture("?size=64x40")
     sketch, now = remote.session.sketch, remote.session.clock.time
-    assert sketch is not None
     expected = remote.session.engine.render(sketch, size=(64, 40), time=now).array
     np.testing.assert_array_equal(drawn, expected)
     np.testing.assert_array_equal(picture(), own.array)
@@ -425,7 +419,6 @@ def test_a_silent_crowd_does_not_lock_the_owner_out(remote: Harness, monkeypatch
     for module in ("studio.remote.server", "local_server"):
         monkeypatch.setattr(f"playground.{module}.MAX_SILENCE", 0.5)
     url = opened(remote)
-    assert remote.remotes.server is not None
 
     def listens() -> None:
         async def go() -> None:
@@ -498,7 +491,6 @@ def test_wrong_options_are_one_sentence(words: list[str], capfd: pytest.CaptureF
 
 def test_closing_frees_the_port_and_ends_the_thread(remote: Harness):
     server = remote.open(port=0).server
-    assert server is not None
     remote.remotes.close()
     assert remote.threads() == set()
     with closing(socket.socket()) as again:
@@ -563,7 +555,6 @@ def test_bytes_that_are_no_http_and_bugs_print_nothing(
 ):
     url = opened(remote)
     server = remote.remotes.server
-    assert server is not None
     for data in (b"\xff" * 200, b"GET / HTTP/9.9\r\n\r\n", b"GET " + b"a" * 100_000 + b" HTTP/1.1\r\n\r\n"):
         with closing(socket.create_connection(("127.0.0.1", server.guard.port))) as other:
             other.sendall(data)
@@ -796,7 +787,6 @@ def runs(how_to_harness: Harness, text: str, folder: Path, *words: str) -> str:
 
 def test_the_script_by_http(how_to_harness: Harness, tmp_path: Path) -> None:
     server = how_to_harness.open(port=0).server
-    assert server is not None
     printed = runs(how_to_harness, block("python", "urlopen").text, tmp_path, server.url)
     assert how_to_harness.value("light.sun") == (250.0, 12.0) and "light.sun 250,12" in printed
     with Image.open(tmp_path / "evening.png") as picture:
@@ -805,7 +795,6 @@ def test_the_script_by_http(how_to_harness: Harness, tmp_path: Path) -> None:
 
 def test_the_script_by_websocket(how_to_harness: Harness, tmp_path: Path) -> None:
     server = how_to_harness.open(port=0).server
-    assert server is not None
     before = how_to_harness.value("light.sun")
     printed = runs(how_to_harness, block("python", "aiohttp").text, tmp_path, server.url)
     events = [json.loads(line) for line in printed.splitlines()]

@@ -119,7 +119,6 @@ def test_what_is_painted_is_added_in_metres(session: Session, painting: Painting
 def test_the_brush_works_for_as_long_as_the_button_is_down(session: Session, painting: Painting) -> None:
     stroke(painting, *[PLACE] * 8)
     layer = painting.layer
-    assert layer is not None
     assert abs(layer.pixels.max() - RISE * 150.0 * (CLICK + 8 * 0.05)) < 1e-3
     painting.undo()
     stroke(painting, PLACE, seconds=60.0)  # a frame that took a minute
@@ -154,7 +153,6 @@ def test_the_file_has_the_window_s_bits_and_draws_its_picture(
 def test_stroke_ended_with_button_down_is_fully_undoable(painting: Painting, act: str) -> None:
     stroke(painting, PLACE)
     layer = painting.layer
-    assert layer is not None
     first = layer.pixels.copy()
     painting.press(PLACE)
     getattr(painting, act)()
@@ -189,7 +187,6 @@ def test_each_stroke_is_undone_and_redone_to_the_same_bytes(session: Session, pa
         painting.brush = Brush(tool=tool, radius=300.0, strength=0.7)  # type: ignore[arg-type]
         stroke(painting, (0.4, 0.45), (0.6, 0.55))
         layer = painting.layer
-        assert layer is not None
         states.append(layer.pixels.copy())
         files.append(layer.path.read_bytes())
         assert len(states) == 1 or (states[-1] != states[-2]).any()
@@ -214,7 +211,6 @@ def test_only_the_rectangle_goes_to_the_graphics_card(session: Session, painting
     before = paint.uploaded
     painting.move((0.47, 0.5))
     layer = painting.layer
-    assert layer is not None
     np.testing.assert_array_equal(read(session, "height.strokes"), layer.pixels)
     assert 0 < paint.uploaded - before <= (120 / (2000 / 96) + 8) * (120 / (1100 / 64) + 4)
     painting.release()

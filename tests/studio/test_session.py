@@ -84,7 +84,6 @@ class Bench:
     def picture(self) -> np.ndarray:
         self.session.frame(SIZE)
         frame = self.session.read()
-        assert frame is not None
         return frame.array
 
 
@@ -105,7 +104,6 @@ def tried(tmp_path: Path, any_engine: Engine) -> Iterator[tuple[Bench, FakeSandb
 
 def test_the_picture_is_the_engines(bench: Bench) -> None:
     picture = bench.picture()
-    assert bench.session.sketch is not None
     expected = bench.session.engine.render(bench.session.sketch, size=SIZE)
     np.testing.assert_array_equal(picture[..., :3], expected.array[..., :3])
 
@@ -609,7 +607,6 @@ def test_memory_is_flat_over_five_hundred_reloads(
             if number in (199, 499):
                 gc.collect()
                 seen.append((dict(+alive), resident()))
-        assert session is not None
         session.release()
     (objects, memory), (later, grown) = seen
     assert later == objects

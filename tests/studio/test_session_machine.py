@@ -208,7 +208,6 @@ class SessionMachine(RuleBasedStateMachine):
         self.is_broken = False
         self.save("[view\n", "[view]\n")
 
-    @rule()
     def read_again(self) -> None:
         self.harness.drafts.reload()
         self.reloaded()
@@ -231,20 +230,31 @@ class SessionMachine(RuleBasedStateMachine):
     def has_level(self) -> bool:
         return self.model.state.get(TECHNIQUE) != "generation/white_noise"
 
-    @rule()
+    @rule(
+        edit=st.sampled_from(("unset", "turn", "turn", "lock", "unlock", "preset", "stop", "stop")),
+        number=st.integers(0, 2),
+    )
+    def edit_otherwise(self, edit: str, number: int) -> None:
+        if edit == "turn":
+            self.turn((None, 10.0, 80.0)[number])
+        elif edit.endswith("lock"):
+            self.lock(edit == "lock")
+        elif edit == "stop":
+            self.stop((1, 2, 9)[number])
+        else:
+            self.unset() if edit == "unset" else self.preset()
+
     def unset(self) -> None:
         self.harness.drafts.unset(LEVEL)
         self.edit_now({VALUE: None})
         self.frame()
 
-    @rule(azimuth=st.sampled_from((None, 10.0, 80.0)))
     def turn(self, azimuth: float | None) -> None:
         camera = None if azimuth is None else Camera(azimuth=azimuth)
         self.harness.drafts.set_camera(camera)
         self.edit_now({CAMERA: camera})
         self.frame()
 
-    @rule(locked=st.booleans())
     def lock(self, locked: bool) -> None:
         if self.model.level != self.model.drawn_level:
             return  # what the file says next would be kept away
@@ -252,22 +262,38 @@ class SessionMachine(RuleBasedStateMachine):
         self.edit_now({LOCK: locked or None})
         self.frame()
 
-    @rule()
     def preset(self) -> None:
         self.harness.bench.commands.set_all("Preset", PRESET)
         if self.has_level and LOCK not in self.model.state:
             self.edit_now({VALUE: PRESET[LEVEL]})
         self.frame()
 
-    @rule(step=st.sampled_from((1, 2, 9)))
     def stop(self, step: int) -> None:
         self.harness.session.stop_at("height", step)
         last = self.harness.session.repeats.get("height", 0)
         self.model.state = changed(self.model.state, {STEP: step if step < last else None})
         self.frame()
 
-    @rule(use=st.sampled_from(TECHNIQUES))
-    def choose(self, use: str) -> None:
+    @rule(use=st.sampled_from(TECHNIQUES), is_taken_back=st.booleans())
+    def choose(self, use: str, is_taken_back: bool = False) -> None:
+        before = self.model.state.get(TECHNIQUE, self.file_technique())
+        self.choose_technique(use)
+        if is_taken_back:
+            self.choose_technique(before)
+
+    @precondition(lambda self: not self.is_broken and not self.is_opening)
+    @rule(order=st.permutations(("save", "technique", "data")), count=st.integers(2, 3))
+    def meet(self, order: list[str], count: int) -> None:
+        """Save and choose before anything of it is checked."""
+        for what in order[:count]:
+            if what == "save":
+                self.save_size(17 if self.model.size == 9 else 9)
+            elif what == "technique":
+                self.choose_technique("./dunes")
+            else:
+                self.choose_file("b.npy")
+
+    def choose_technique(self, use: str) -> None:
         self.harness.drafts.choose("height", use)
         self.propose({TECHNIQUE: None if use == self.file_technique() else use})
         self.frame()
@@ -363,6 +389,19 @@ class SessionMachine(RuleBasedStateMachine):
         self.reloaded()
         self.frame()
 
+    @precondition(lambda self: not self.is_broken and not self.is_opening)
+    @rule(level=st.sampled_from((None, 0.75)), restarts=st.booleans())
+    def visit_the_other(self, level: float | None, restarts: bool) -> None:
+        """``level``: an edit of the sketch that is left, in the frame in which the other is shown."""
+        left = self.shown
+        self.open("two" if left == "one" else "one", restarts)
+        self.pass_check(level)
+        if restarts:
+            self.restart(left, False)
+        else:
+            self.open(left, True)
+            self.pass_check(None)
+
     @precondition(lambda self: not self.is_broken)
     @rule(name=st.sampled_from(("one", "two")), crashes=st.booleans())
     def restart(self, name: str, crashes: bool) -> None:
@@ -388,7 +427,6 @@ class SessionMachine(RuleBasedStateMachine):
 
     def shown_state(self) -> State:
         session = self.harness.session
-        assert session.shown is not None
         return state_of(session.shown.edits, session.view.steps)
 
     @invariant()
@@ -417,11 +455,11 @@ class SessionMachine(RuleBasedStateMachine):
         assert (session.sketch.terrain, session.sketch.camera) == (expected.terrain, expected.camera)
         stops = {path: step for (kind, path), step in self.model.state.items() if kind == "step"}
         frame = session.read()
-        assert frame is not None
         stops = {path: step for path, step in stops.items() if path in session.repeats}
         with Engine(self.engine.ctx) as fresh:
             picture = fresh.render(expected, size=SIZE, steps=stops).array
         np.testing.assert_array_equal(frame.array[..., :3], picture[..., :3])
+        self.edits_are_those_of_the_model()
 
     def fresh(self) -> Sketch:
         """Return the files with the edits of the model."""
