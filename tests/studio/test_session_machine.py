@@ -390,17 +390,23 @@ class SessionMachine(RuleBasedStateMachine):
         self.frame()
 
     @precondition(lambda self: not self.is_broken and not self.is_opening)
-    @rule(level=st.sampled_from((None, 0.75)), restarts=st.booleans())
-    def visit_the_other(self, level: float | None, restarts: bool) -> None:
-        """``level``: an edit of the sketch that is left, in the frame in which the other is shown."""
+    @rule(level=st.sampled_from((None, 0.75)), how=st.sampled_from(("back", "restart", "close")))
+    def visit_the_other(self, level: float | None, how: str) -> None:
+        """``level``: an edit of the sketch that is left, in the frame in which the other is shown.
+
+        ``how``: come back, after a restart, or as the window is closed before the other is shown.
+        """
         left = self.shown
-        self.open("two" if left == "one" else "one", restarts)
-        self.pass_check(level)
-        if restarts:
-            self.restart(left, False)
+        self.open("two" if left == "one" else "one", how == "back")
+        if how == "close":
+            self.edit(level or 0.375)
         else:
+            self.pass_check(level)
+        if how == "back":
             self.open(left, True)
             self.pass_check(None)
+        else:
+            self.restart(left, False)
 
     @precondition(lambda self: not self.is_broken)
     @rule(name=st.sampled_from(("one", "two")), crashes=st.booleans())
