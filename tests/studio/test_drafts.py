@@ -110,7 +110,7 @@ RELOADS: dict[str, tuple[dict[str, float], list[tuple[list[tuple[str, str]], dic
 
 @pytest.mark.always
 @pytest.mark.parametrize("name", RELOADS)
-def test_what_was_set_outlives_a_reload_unless_the_file_changed_it(folder: Path, name: str) -> None:
+def test_what_was_set_outlives_a_reload_of_other_things(folder: Path, name: str) -> None:
     values, reloads = RELOADS[name]
     draft = edited(folder, **values)
     for replaced, expected, message in reloads:
@@ -413,6 +413,16 @@ def test_undo_and_redo_during_a_check(harness: Harness) -> None:
     harness.drafts.set(LEVEL, 0.5)
     harness.answer(GOOD)
     assert (harness.technique, harness.size, harness.level) == ("./hills", 33, 0.5)
+
+
+def test_a_choice_waits_for_a_file_that_cannot_be_read(harness: Harness) -> None:
+    harness.drafts.choose("height", "./dunes")
+    harness.save("[view]", "[view")
+    assert harness.session.error is not None
+    harness.frame()
+    harness.save("[view", "[view]")
+    harness.answer(GOOD)
+    assert harness.session.error is None and harness.technique == "./dunes"
 
 
 def test_texts_and_a_technique_that_come_together_are_both_shown(harness: Harness) -> None:

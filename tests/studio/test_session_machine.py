@@ -424,10 +424,15 @@ class SessionMachine(RuleBasedStateMachine):
     @precondition(lambda self: not self.is_lost)
     @rule()
     def lose_the_context(self) -> None:
+        session = self.harness.session
+        is_idle, before = self.harness.drafts.stage is ReloadStage.NONE, session.read()
         self.engines.append(Engine(self.engine.ctx))
-        self.harness.session.rebuild(self.engines[-1])
+        session.rebuild(self.engines[-1])
         self.is_lost = True
         self.frame()
+        after = session.read()
+        if is_idle:
+            np.testing.assert_array_equal(after.array, before.array)
 
     # ── truth ────────────────────────────────────────────────────────────────
 
