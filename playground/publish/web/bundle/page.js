@@ -1,4 +1,4 @@
-/* sources d35249e1dba3c64b */
+/* sources ad0410994a8ae7f7 */
 /* Contains CodeMirror.
 MIT License
 
