@@ -263,7 +263,7 @@ class Harness(Bare):
     def __init__(self, engine: Engine, path: Path, size: tuple[int, int] = (1280, 720)) -> None:
         super().__init__(engine, path, size)
         for name in ("small_button", "radio_button"):
-            self._watch(imgui, name)
+            self.watch(imgui, name)
         self.autosave = Autosave(self.session, memory_of(self.session.path))
         host = Host(
             self.bench, self.autosave, lambda: self.autosave.look(size), lambda: None, lambda: self.theme

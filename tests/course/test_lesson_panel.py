@@ -205,7 +205,7 @@ def test_lessons_are_read_only_when_they_are_opened(harness, monkeypatch):
 def test_bare_command_opens_window_with_lessons(monkeypatch):
     values: list[dict[str, object]] = []
     monkeypatch.setattr("playground.doctor.where_to_show", lambda *_: ":0")
-    monkeypatch.setattr(cli.live, "open_window", lambda *_, **rest: values.append(rest))
+    monkeypatch.setattr("playground.studio.commands.open_window", lambda *_, **rest: values.append(rest))
     assert cli.main([]) == 0
     assert values == [{"request": {"welcome": True}}]
 

@@ -567,7 +567,6 @@ def test_nothing_is_cached_unless_somebody_asks(any_engine, worn, monkeypatch, t
     assert {name for name in using if name.startswith("commands")} == {
         "commands/cache.py",
         "commands/doctor.py",
-        "commands/live.py",
     }
 
 
