@@ -28,9 +28,9 @@ os.environ.pop("PLAYGROUND_PROGRAM", None)  # of ./play test: messages are the s
 pytest_plugins = ["pytester"]
 
 ROOT = Path(__file__).resolve().parent.parent
+OTHER_ROOMS = "(?=studio|publish|verify|course|flight|lsp)"  # that tests of another room may import from
 ROOM_IMPORT = re.compile(
-    r"^(?:from playground\.|import playground\.|from \.\.+(?=studio|publish|verify|course|flight|lsp))(\w+)",
-    re.MULTILINE,
+    rf"^(?:(?:from|import) playground\.|from (?:tests|\.)\.+{OTHER_ROOMS})(\w+)", re.MULTILINE
 )
 OBJECTS = (
     moderngl.Texture,

@@ -12,7 +12,7 @@ from playground.course.book.live import LiveBook
 from playground.course.measures import Number
 from playground.course.read import read_lessons
 
-from ..verify.report.browser import MISSING, Browser
+from ..browser import MISSING, Browser
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 

@@ -44,8 +44,8 @@ from playground.engine.engine import Engine
 from playground.errors import DataError
 from playground.sketch.assign import values_of
 
-from ..verify.report.browser import MISSING as NO_BROWSER
-from ..verify.report.browser import Browser
+from ..browser import MISSING as NO_BROWSER
+from ..browser import Browser
 from . import handed_in_class as students
 
 FILE = "diamond_square-dimension.glsl"

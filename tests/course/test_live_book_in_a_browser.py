@@ -25,8 +25,8 @@ from playground.course.scenes import broken, bug_region, draw, with_value
 from playground.course.tasks import EXERCISES
 from playground.engine.engine import Engine
 
+from ..browser import MISSING, Browser
 from ..publish.web.pages import VIEW
-from ..verify.report.browser import MISSING, Browser
 from .conftest import BODY, FRENCH, FRONT, SKETCHES
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]

@@ -19,7 +19,7 @@ from playground.course.read import read_lesson
 from playground.course.scenes import draw, with_value
 from playground.publish.notebook.export import TerrainHTMLExporter
 
-from ..verify.report.browser import MISSING
+from ..browser import MISSING
 from .test_live_book_in_a_browser import LLVMPIPE, RIGHT, Recorder, drawn, picture, served
 from .test_notebook import STATES
 

@@ -16,7 +16,7 @@ import pytest
 import playground
 from playground.commands.entries import techniques as listed
 
-from ..verify.report.browser import MISSING, Browser
+from ..browser import MISSING, Browser
 
 pytestmark = pytest.mark.slow
 IN_A_BROWSER = pytest.mark.skipif(bool(MISSING), reason=MISSING)

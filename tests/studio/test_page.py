@@ -11,7 +11,7 @@ import pytest
 
 from playground.engine.engine import Engine
 
-from ..verify.report.browser import MISSING, Browser
+from ..browser import MISSING, Browser
 from .remote_desk import TOKEN, Harness
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]

@@ -13,8 +13,8 @@ from types import TracebackType
 
 import nbformat
 
-from ...verify.report.browser import GENEROUS, MESA, Browser
-from ...verify.report.browser import MISSING as NO_BROWSER
+from ...browser import GENEROUS, MESA, Browser
+from ...browser import MISSING as NO_BROWSER
 
 MISSING = NO_BROWSER or ("" if importlib.util.find_spec("jupyterlab") else "needs jupyterlab, for a browser")
 NAME = "page.ipynb"

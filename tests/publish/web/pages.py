@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 import playground.publish.web
 
-from ...verify.report.browser import MESA, MISSING, Browser
+from ...browser import MESA, MISSING, Browser
 from .firefox import Firefox
 from .node import NODE
 

@@ -15,9 +15,9 @@ from playground.shader.complaints import explain
 from playground.shader.driver_log import hint, library, parse_log
 from playground.shader.wrap import ShaderStage, Wrapped
 
+from ...browser import MISSING, SWIFTSHADER, Browser
 from ...shader.test_logs import EXPECTED
 from ...shader.test_logs import LOGS as OTHERS
-from ...verify.report.browser import MISSING, SWIFTSHADER, Browser
 from .node import Node
 from .planted_errors import PLANTED, in_es
 

@@ -13,7 +13,7 @@ import pytest
 
 import playground.publish.web
 
-from ...verify.report.browser import MESA, MISSING, Browser
+from ...browser import MESA, MISSING, Browser
 from .node import NODE
 from .pages import VIEW
 from .planted_errors import WAVES

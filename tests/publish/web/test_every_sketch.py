@@ -19,8 +19,8 @@ from playground.publish.web.plan import KINDS
 from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Sketch
 
+from ...browser import SWIFTSHADER
 from ...loading import load
-from ...verify.report.browser import SWIFTSHADER
 from .pages import MISSING, Pages
 from .random_settings import Settings, random_settings
 

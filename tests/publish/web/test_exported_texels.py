@@ -23,7 +23,7 @@ from playground.publish.web.plan import KINDS
 from playground.shader.colours import srgb_to_linear
 from playground.sketch.assign import shown_parameters
 from playground.sketch.model import Sketch
-from tests.verify.report import browser as browsers
+from tests import browser as browsers
 
 from ...loading import load
 from ...sketch_texts import map_of, passes

@@ -19,7 +19,7 @@ from playground.publish.web.blobs import packed
 from playground.publish.web.bundle import read_bundle
 from playground.publish.web.page import Poster, page_html
 from playground.publish.web.page_data import page_data
-from tests.verify.report import browser as browsers
+from tests import browser as browsers
 
 from ...loading import load
 from .node import Node

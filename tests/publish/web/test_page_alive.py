@@ -21,8 +21,8 @@ from playground.publish.web_page import page_bytes, prepare_page
 from playground.sketch.model import DEFAULT_PICTURE, Camera, Sketch
 from playground.studio.picture.view import field_for
 
+from ...browser import MESA, Browser
 from ...loading import load
-from ...verify.report.browser import MESA, Browser
 from .pages import VIEW
 
 pytestmark = pytest.mark.slow

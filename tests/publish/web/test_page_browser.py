@@ -14,7 +14,7 @@ import pytest
 
 from tests.publish.web import fake_page
 
-from ...verify.report.browser import MISSING, Browser
+from ...browser import MISSING, Browser
 from .firefox import Firefox
 from .node import MISSING as NO_NODE
 

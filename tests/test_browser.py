@@ -14,7 +14,7 @@ from playground.verify.shots.report import write_report
 from playground.verify.shots.review import Review
 
 from .browser import MISSING, Browser
-from .pictures import picture
+from .verify.report.pictures import picture
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 
