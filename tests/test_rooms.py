@@ -91,8 +91,9 @@ def without(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 
     shutil.copytree(PACKAGE, tmp_path / "playground", ignore=ignored(PACKAGE))
     shutil.copytree(ROOT / "tests", tmp_path / "tests", ignore=ignored(ROOT / "tests"))
-    for name in ("docs", "screenshots"):
-        (tmp_path / name).symlink_to(ROOT / name)
+    for path in ROOT.iterdir():
+        if path.name not in ("playground", "tests", "glsl", "pyproject.toml", ".git", ".venv"):
+            (tmp_path / path.name).symlink_to(path)
     settings = (ROOT / "pyproject.toml").read_text("utf-8")
     if "verify" in gone:  # its plugin
         settings = settings.replace('"-p", "playground.verify.shots.plugin", ', "")
