@@ -25,7 +25,7 @@ class Capture(Addition):
 
     def __init__(self, host: Host) -> None:
         bench = host.bench
-        folder, settle = bench.commands.folder, bench.painting.settle
+        folder, settle = bench.actions.folder, bench.painting.settle
         self.captures = Captures(bench.session, bench.notices, folder, settle)
         self._theme = host.theme
 

@@ -25,7 +25,7 @@ from playground.studio.session import Session
 
 
 @dataclass
-class Commands:
+class Actions:
     """Those of one session; copies go into ``folder``."""
 
     session: Session

@@ -203,14 +203,14 @@ class Live:
             sign_held=lambda: window.sign_held,
         )
         self.bench = Workbench(session, controls, opener=Opener(wake), size=remembered_size(), wake=wake)
-        self.drops = Drops(self.bench.commands)
+        self.drops = Drops(self.bench.actions)
         self.guard = Guard(self.bench.notices.say)
         self.terminal = TerminalErrors(report)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.status = Status()
         autosave.compare = self.bench.inspection.compare
-        self.bench.commands.opens = autosave.open
+        self.bench.actions.opens = autosave.open
         self._settling = _SETTLES
         self._last = time.perf_counter()
         self._reloads = session.last_reload

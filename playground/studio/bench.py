@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.studio.actions import Commands
+from playground.studio.actions import Actions
 from playground.studio.addition import Addition
 from playground.studio.code.editors import Opener
 from playground.studio.code.open_files import OpenFiles
@@ -51,7 +51,7 @@ class Workbench:
         self.painting = Painting(session, folder, wake=wake)
         self.file = SketchFile(session, self.notices)
         self.undo = Undo(session, self.notices, self.painting, self.file)
-        self.commands = Commands(session, self.notices, self.undo, self.file, folder)
+        self.actions = Actions(session, self.notices, self.undo, self.file, folder)
         self.keyframes = KeyframeEdits(session, self.notices, self.undo, self.file)
         self.files = OpenFiles(self.notices, opener or Opener())
         self.interface = Interface(size=size or InterfaceSize())

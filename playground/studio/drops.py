@@ -14,7 +14,7 @@ from playground.errors import PlaygroundError
 from playground.shader.dialect import dialects
 from playground.sketch.find import find, is_pack, unpacked_beside
 from playground.sketch.model import Parameter, Sketch, Value
-from playground.studio.actions import Commands
+from playground.studio.actions import Actions
 from playground.studio.channels.channels import IMAGES, MEDIA, Taker, takers
 from playground.studio.panel.parameter_list import Item, items_of, shown_values
 
@@ -49,7 +49,7 @@ def is_terrain(path: Path) -> bool:
 class Drops:
     """The files that were dropped on one window."""
 
-    commands: Commands
+    actions: Actions
     waiting: list[Path] = field(default_factory=list)  # files that the user is to choose a place for
     asks: bool = False  # the choice is still to be shown
     _takers: dict[str, tuple[Taker, ...]] = field(default_factory=dict)  # by the ending of what waits
@@ -57,13 +57,13 @@ class Drops:
 
     def take(self, paths: list[Path]) -> None:
         """Take in dropped files: the first sketch opens, images, videos and sounds wait for a choice."""
-        say = self.commands.notices.say
+        say = self.actions.notices.say
         for path in paths:
             if is_pack(path) and path.is_file():
                 self._open_pack(path)
                 return
             if _is_sketch(path):
-                self.commands.open(path)
+                self.actions.open(path)
                 return
         files = [path for path in paths if path.suffix.lower() in _FILES and path.is_file()]
         for path in paths:
@@ -71,7 +71,7 @@ class Drops:
                 say(f"{path.name} is neither a sketch, a shader nor an image, a video or a sound")
         parameter_files = [path for path in files if self.parameters(path) or self.channels(path)]
         if files and not parameter_files and is_terrain(files[0]):
-            self.commands.open(files[0])
+            self.actions.open(files[0])
             return
         if files and not parameter_files:
             say(f"no parameter of this sketch takes a file like {files[0].name}, so it has no place in it")
@@ -83,7 +83,7 @@ class Drops:
 
         Each with its path and the file that it has now.
         """
-        draft = self.commands.session.shown
+        draft = self.actions.session.shown
         if draft is None:
             return []
         items, values = items_of(draft).values(), shown_values(draft).of
@@ -102,7 +102,7 @@ class Drops:
 
     def channels(self, file: Path) -> tuple[Taker, ...]:
         """Return the channels of other tools' shaders that take a file."""
-        draft, ending = self.commands.session.shown, file.suffix.lower()
+        draft, ending = self.actions.session.shown, file.suffix.lower()
         if draft is None:
             return ()
         if self._takers_of is not draft.base:
@@ -114,7 +114,7 @@ class Drops:
     def feed(self, taker: Taker) -> None:
         """Feed a channel from the file that waits."""
         file = str(self._next().resolve())
-        self.commands.session.drafts.feed(taker.channel.path, taker.source, **{taker.parameter: file})
+        self.actions.session.drafts.feed(taker.channel.path, taker.source, **{taker.parameter: file})
 
     def _next(self) -> Path:
         file, *self.waiting = self.waiting
@@ -123,18 +123,18 @@ class Drops:
 
     def open(self) -> None:
         """Open the elevation file that waits, in a sketch of its own."""
-        self.commands.open(self._next())
+        self.actions.open(self._next())
 
     def put(self, path: str) -> None:
         """Put the file that waits into a parameter."""
         file = self._next()
-        self.commands.set_all(f"{file.name} into {path}", {path: str(file.resolve())})
+        self.actions.set_all(f"{file.name} into {path}", {path: str(file.resolve())})
 
     def _open_pack(self, path: Path) -> None:
         try:
             file, message = unpacked_beside(path)
         except PlaygroundError as error:
-            self.commands.notices.say(str(error))
+            self.actions.notices.say(str(error))
             return
-        self.commands.notices.say(message)
-        self.commands.open(file)
+        self.actions.notices.say(message)
+        self.actions.open(file)

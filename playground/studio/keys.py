@@ -143,7 +143,7 @@ _KEYS: tuple[Key | None, ...] = (
         Key(_K.none, str(n), _TOOLS, partial(_take, tool=tool), letter=str(n), brush=True)
         for n, tool in enumerate(TOOLS, 1)
     ),
-    Key(_K.s, "S", "save a PNG", lambda b: b.commands.save_picture(), brief="save"),
+    Key(_K.s, "S", "save a PNG", lambda b: b.actions.save_picture(), brief="save"),
     Key(_K.tab, "Tab", "hide the panel", lambda b: b.interface.toggle_panel(), brief="hide"),
     None,  # the place of those of rooms
     Key(_K.none, "/", "search the parameters", lambda b: b.interface.search(), letter="/"),
@@ -155,7 +155,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.z, "Ctrl+Z", "undo", lambda b: b.undo.undo(), ctrl=True),
     Key(_K.z, "Ctrl+Shift+Z", "redo", lambda b: b.undo.redo(), ctrl=True, shift=True),
     Key(_K.y, "Ctrl+Y", "redo", lambda b: b.undo.redo(), ctrl=True),
-    Key(_K.s, "Ctrl+S", "save values into the sketch", lambda b: b.commands.save_values(), ctrl=True),
+    Key(_K.s, "Ctrl+S", "save values into the sketch", lambda b: b.actions.save_values(), ctrl=True),
     Key(_K.v, "Ctrl+V", "open the shader's text on the clipboard", lambda b: _paste(b), ctrl=True),
     Key(_K.backspace, "Backspace, Shift+Backspace", _VISITS, lambda b: _visit(b)),
     Key(_K.none, "Ctrl++", _SIZE_KEYS, lambda b: _resize(b, 1), ctrl=True, sign="+"),
@@ -202,11 +202,11 @@ def _step(bench: Workbench) -> None:
 
 
 def _paste(bench: Workbench) -> None:
-    bench.commands.paste(imgui.get_clipboard_text() or "")
+    bench.actions.paste(imgui.get_clipboard_text() or "")
 
 
 def _visit(bench: Workbench) -> None:
-    bench.commands.visit(1 if _shift_held() else -1)
+    bench.actions.visit(1 if _shift_held() else -1)
 
 
 def _shift_held() -> bool:

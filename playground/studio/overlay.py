@@ -170,7 +170,7 @@ def draw_drops(drops: Drops, look: Theme) -> None:
         return
     with look.font(look.bold):
         imgui.text_unformatted(f"Put {drops.waiting[0].name} where?")
-    draft = drops.commands.session.shown
+    draft = drops.actions.session.shown
     if is_terrain(drops.waiting[0]) and imgui.selectable(_OWN_SKETCH, False)[0]:
         drops.open()
     for taker in drops.channels(drops.waiting[0]) if drops.waiting else ():

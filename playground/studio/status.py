@@ -63,7 +63,7 @@ class Status:
             "unsaved": unsaved(bench.files.editing),
             "map": session.view.map.ref if session.view.map else "",
             "steps": dict(session.view.steps),
-            "saved": str(bench.commands.saved_picture or ""),
+            "saved": str(bench.actions.saved_picture or ""),
             "reload_ms": round(session.last_reload.seconds * 1e3, 1) if session.last_reload else 0.0,
             "not_finite": [str(number) for number in not_finite],
             "runs": dict(session.engine.runs),

@@ -283,8 +283,8 @@ def test_play_on_opens_figure_as_own_sketch_with_its_edits(harness):
 
 
 def test_dropped_sketch_leaves_figure_even_of_same_file(harness):
-    harness.bench.commands.opens = harness.autosave.open
-    harness.bench.commands.open(find("white_noise"))
+    harness.bench.actions.opens = harness.autosave.open
+    harness.bench.actions.open(find("white_noise"))
     harness.run_frames(2)
     harness.session.drafts.set("height.seed", 41)
     harness.run_frames(2)
@@ -302,7 +302,7 @@ def test_dropped_sketch_leaves_figure_even_of_same_file(harness):
 
 
 def test_playing_on_with_the_sketch_that_is_open_keeps_its_undo(harness):
-    harness.bench.commands.open(find("white_noise"))
+    harness.bench.actions.open(find("white_noise"))
     harness.run_frames(2)
     harness.session.drafts.set("height.seed", 41)
     harness.run_frames(2)
@@ -506,7 +506,7 @@ def test_numbers_are_computed_at_idle_and_picture_stays(harness):
 def test_opening_sketch_takes_stage_from_lesson(harness):
     harness.open()
     assert harness.reader.figure.before_lesson is not None
-    harness.bench.commands.open(find("diamond_square_steps"))
+    harness.bench.actions.open(find("diamond_square_steps"))
     harness.run_frames(3)
     assert harness.reader.figure.before_lesson is None and harness.reader.figure.key is None
 

@@ -38,7 +38,7 @@ class Bare:
         self.time = 0.0
         self.session = Session(engine, path)
         self.bench = Workbench(self.session, WindowControls(self._quit), folder=path, now=lambda: self.time)
-        self.drops = Drops(self.bench.commands)
+        self.drops = Drops(self.bench.actions)
         self.panel = Panel()
         self.places: dict[str, tuple[float, float, float, float]] = {}  # by label: x, y, width, height
         self._watched: list[tuple[object, str, object]] = []

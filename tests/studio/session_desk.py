@@ -91,8 +91,8 @@ class Harness:
             self.session, WindowControls(lambda: None), folder=self.folder, now=lambda: self.time
         )
         self.autosave = Autosave(self.session, memory, result, lambda: self.time)
-        self.bench.commands.opens = self.autosave.open  # type: ignore
-        self.drops = Drops(self.bench.commands)
+        self.bench.actions.opens = self.autosave.open  # type: ignore
+        self.drops = Drops(self.bench.actions)
         self.answer(GOOD)
         assert self.session.shown is not None
 

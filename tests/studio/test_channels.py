@@ -169,7 +169,7 @@ class Window:
             self.session, WindowControls(lambda: None), folder=edits_folder, now=lambda: self.time
         )
         self.autosave = Autosave(self.session, self.memory, result, lambda: self.time)
-        self.bench.commands.opens = self.autosave.open
+        self.bench.actions.opens = self.autosave.open
         self.said: list[str] = []
         self.frame()
 
@@ -241,7 +241,7 @@ def test_what_was_chosen_is_there_in_the_next_session(
     window.close()
     again = Window(any_engine, path, edits_folder)
     assert again.colour == GREEN and again.said == []
-    again.bench.commands.reset_values()
+    again.bench.actions.reset_values()
     again.frame()
     assert again.sources[0] == "foreign/noise"
     again.close()
@@ -291,7 +291,7 @@ def test_it_is_saved_into_the_sketch(edits_folder: Path, any_engine: Engine) -> 
     window = Window(any_engine, edits_folder / "home", edits_folder)
     window.feed("foreign/image", image=str(edits_folder / "green.png"))
     window.feed("land", "view.iChannel1")
-    window.bench.commands.save_values()
+    window.bench.actions.save_values()
     window.frame()
     assert any("saved 1 value and 2 channels into" in text for text in window.said), window.said
     assert window.session.shown is not None and window.session.shown.edits.channels == ()
@@ -315,12 +315,12 @@ def test_a_shader_alone_is_saved_as_a_sketch_next_to_it(edits_folder: Path, any_
     window.frame()
     assert window.colour == GREY
     copied: list[str] = []
-    window.bench.commands.copy_toml(copied.append)
+    window.bench.actions.copy_toml(copied.append)
     window.frame()
     assert copied == [] and any("is no TOML" in text for text in window.said)
     window.time += 60.0
-    assert window.bench.commands.copy_is[0] == "Save a sketch"
-    window.bench.commands.save_values()
+    assert window.bench.actions.copy_is[0] == "Save a sketch"
+    window.bench.actions.save_values()
     window.frame()
     assert window.session.path == home / "first_sketch.toml"
     assert window.said == [f"saved first_sketch.toml in {home}; from here on this is the sketch"]
@@ -328,7 +328,7 @@ def test_a_shader_alone_is_saved_as_a_sketch_next_to_it(edits_folder: Path, any_
     assert sorted(path.name for path in home.iterdir()) == ["first.frag", "first_sketch.toml", "green.png"]
     saved = load(home / "first_sketch.toml")
     assert [c.source for c in channels(saved)] == ["foreign/image", "foreign/noise"]
-    window.bench.commands.visit(-1)
+    window.bench.actions.visit(-1)
     window.frame()
     assert window.session.path == home / "first.frag" and window.sources[0] == "foreign/image"
     window.close()
@@ -354,7 +354,7 @@ def test_a_shader_of_several_passes_is_saved_as_a_sketch_too(edits_folder: Path,
     window.session.drafts.set(gain, 0.5)
     window.frame()
     assert window.colour == GREY
-    window.bench.commands.save_a_copy()
+    window.bench.actions.save_a_copy()
     window.frame()
     assert window.session.path == home / "toy_sketch.toml", window.said
     assert window.colour == GREY and window.session.error is None
@@ -369,7 +369,7 @@ def test_a_kernel_alone_is_saved_as_a_sketch_too(edits_folder: Path, any_engine:
     window.session.drafts.set("height.level", 0.25)
     window.frame()
     before = window.session.read()
-    window.bench.commands.save_a_copy()
+    window.bench.actions.save_a_copy()
     window.frame()
     assert window.session.path.name == "flat_sketch.toml" and window.session.error is None, window.said
     after = window.session.read()
@@ -382,7 +382,7 @@ def test_what_cannot_be_saved_says_why(edits_folder: Path, any_engine: Engine) -
     file = edits_folder / "alone" / "other.fragment"
     file.write_text(FIRST, "utf-8")
     window = Window(any_engine, file, edits_folder)
-    window.bench.commands.save_a_copy()
+    window.bench.actions.save_a_copy()
     window.frame()
     assert any(
         "a sketch uses shaders that end in .glsl, .frag or .fs, not in .fragment" in text

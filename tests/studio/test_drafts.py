@@ -228,9 +228,9 @@ def test_staying_restores_map_stopped_repeats_and_clock(harness: Harness) -> Non
     harness.session.show("height:height")
     harness.session.clock.time, harness.session.clock.playing = 3.0, False
     harness.frame()
-    harness.bench.commands.open(harness.folder / "two")
+    harness.bench.actions.open(harness.folder / "two")
     harness.answer(BAD)
-    harness.bench.commands.open(harness.folder / "one")
+    harness.bench.actions.open(harness.folder / "one")
     harness.answer(GOOD)
     view, clock = harness.session.view, harness.session.clock
     assert harness.name == "one" and view.steps == {"height": 2}
@@ -242,7 +242,7 @@ def test_undrawable_sketch_keeps_view_of_shown_one(any_engine: Engine, harness: 
     harness.session.stop_at("height", 2)
     harness.frame()
     harness.write("two/hills.glsl", DESK_KERNEL.replace("level *", "levle *"))
-    harness.bench.commands.open(harness.folder / "two")
+    harness.bench.actions.open(harness.folder / "two")
     harness.answer(GOOD)  # the sandbox has no objection, the driver of this process has one
     assert harness.session.error is not None and harness.name == "one"
     assert harness.session.view.steps == {"height": 2}
@@ -253,7 +253,7 @@ def test_a_path_without_a_sketch_changes_nothing(harness: Harness) -> None:
     harness.session.clock.time = 3.0
     harness.drafts.set(LEVEL, 0.5)
     harness.frame()
-    harness.bench.commands.open(harness.folder / "none.toml")
+    harness.bench.actions.open(harness.folder / "none.toml")
     harness.frame()
     assert (
         "there is no file" in harness.messages and harness.session.path == harness.folder / "one/sketch.toml"
@@ -267,7 +267,7 @@ def test_a_path_without_a_sketch_changes_nothing(harness: Harness) -> None:
 def test_edits_needing_check_are_refused_until_sketch_opens(harness: Harness) -> None:
     harness.drafts.choose("height", "./dunes")
     harness.answer(GOOD)
-    harness.bench.commands.open(harness.folder / "two")
+    harness.bench.actions.open(harness.folder / "two")
     harness.drafts.choose("height", "generation/white_noise")
     assert "height: generation/white_noise is not taken" in harness.messages and "two" in harness.messages
     harness.drafts.set(ELEVATION, harness.file("b.npy"))
@@ -284,7 +284,7 @@ def test_no_keyframe_is_written_while_another_sketch_is_opened(harness: Harness)
     harness.drafts.set(LEVEL, 0.5)
     harness.frame()
     before = (harness.folder / "one/sketch.toml").read_bytes()
-    harness.bench.commands.open(harness.folder / "two")
+    harness.bench.actions.open(harness.folder / "two")
     assert not harness.bench.keyframes.add_here([LEVEL], camera=False)
     assert "two" in harness.messages and (harness.folder / "one/sketch.toml").read_bytes() == before
     assert harness.level == 0.5
@@ -295,18 +295,18 @@ def test_no_keyframe_is_written_while_another_sketch_is_opened(harness: Harness)
 def test_save_is_refused_while_other_sketch_fails_and_edits_stay(harness: Harness) -> None:
     before = (harness.folder / "one/sketch.toml").read_bytes()
     harness.write("two/sketch.toml", "format = 1\n[view")
-    harness.bench.commands.open(harness.folder / "two")
+    harness.bench.actions.open(harness.folder / "two")
     for level in (0.5, 0.75):
         harness.drafts.set(LEVEL, level)
         harness.frame()
-        harness.bench.commands.save_values()
+        harness.bench.actions.save_values()
         harness.frame()
     assert "sketch.toml is not saved while" in harness.messages and "save a copy" in harness.messages
     assert (harness.folder / "one/sketch.toml").read_bytes() == before
-    harness.bench.commands.open(harness.folder / "one")
+    harness.bench.actions.open(harness.folder / "one")
     harness.answer(GOOD)
     assert (harness.name, harness.level) == ("one", 0.75)
-    harness.bench.commands.save_values()
+    harness.bench.actions.save_values()
     assert b"level = 0.75" in (harness.folder / "one/sketch.toml").read_bytes()
 
 
@@ -314,8 +314,8 @@ def test_a_copy_of_what_is_shown_is_opened_instead(harness: Harness) -> None:
     harness.drafts.set(LEVEL, 0.5)
     harness.session.stop_at("height", 2)
     harness.frame()
-    harness.bench.commands.open(harness.folder / "two")
-    harness.bench.commands.save_a_copy()
+    harness.bench.actions.open(harness.folder / "two")
+    harness.bench.actions.save_a_copy()
     harness.answer(GOOD)
     harness.answer(GOOD)
     assert harness.session.path == Path(harness.session.shown.file.file)
@@ -565,13 +565,13 @@ def test_everything_is_undone_and_done_again(desk: Desk) -> None:
     pictures = [desk.frame()]
     for act in (
         lambda: session.drafts.set("height.level", 0.5),
-        lambda: bench.commands.apply_preset("high"),
+        lambda: bench.actions.apply_preset("high"),
         lambda: session.drafts.choose("height", "./other"),
         lambda: session.drafts.set_camera(Camera(azimuth=3.0)),
         lambda: session.drafts.lock("height.other", True),
-        lambda: bench.commands.reset_values(),
+        lambda: bench.actions.reset_values(),
         lambda: bench.undo.seek(2.5),
-        lambda: bench.commands.set_all("Random, seed 1", {"height.level": 0.125}),
+        lambda: bench.actions.set_all("Random, seed 1", {"height.level": 0.125}),
     ):
         act()
         pictures.append(desk.frame())
@@ -597,7 +597,7 @@ def test_everything_is_undone_and_done_again(desk: Desk) -> None:
 
 def test_a_locked_parameter_is_left_by_presets(desk: Desk) -> None:
     desk.session.drafts.lock("height.level", True)
-    desk.bench.commands.apply_preset("high")
+    desk.bench.actions.apply_preset("high")
     desk.frame()
     assert (desk.value("level"), desk.value("other")) == (0.25, 0.5)
     assert "1 parameter; 1 locked parameter left alone" in desk.messages
@@ -608,7 +608,7 @@ def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> Non
     desk.frame()
     desk.session.drafts.set_camera(Camera(azimuth=12.3456, elevation=30.0))
     before = desk.frame()
-    desk.bench.commands.save_values()
+    desk.bench.actions.save_values()
     assert 'use = "./terrain"\nset = { level = 0.5 }\n' in desk.text and "azimuth = 12.35" in desk.text
     assert desk.text.startswith("format = 1  # ours\n")
     np.testing.assert_array_equal(desk.frame(), before)
@@ -619,7 +619,7 @@ def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> Non
     assert desk.session.sketch.camera == Camera() and desk.value("level") == 0.5
     desk.bench.undo.undo()
     assert desk.value("level") == 0.25, "what the file said before"
-    desk.bench.commands.save_values()
+    desk.bench.actions.save_values()
     desk.frame()
     assert "set = { level = 0.25 }" in desk.text and "azimuth = 200" in desk.text
     for _ in range(2):
@@ -631,7 +631,7 @@ def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> Non
 def test_a_technique_is_saved_and_undone(desk: Desk) -> None:
     desk.session.drafts.choose("height", "./other")
     desk.frame()
-    desk.bench.commands.save_values()
+    desk.bench.actions.save_values()
     desk.frame()
     assert 'use = "./other"' in desk.text and desk.session.shown is not None
     assert desk.session.shown.edits.techniques == ()
@@ -642,10 +642,10 @@ def test_a_technique_is_saved_and_undone(desk: Desk) -> None:
 
 
 def test_values_by_hand_become_a_preset(desk: Desk) -> None:
-    desk.bench.commands.save_as_preset("low")
+    desk.bench.actions.save_as_preset("low")
     assert "would be empty" in desk.messages and "low" not in desk.text
     desk.session.drafts.set("height.level", 0.125)
-    desk.bench.commands.save_as_preset(" low ")
+    desk.bench.actions.save_as_preset(" low ")
     desk.frame()
     assert [p.name for p in desk.session.sketch.presets] == ["high", "low"]
     assert desk.session.sketch.presets[1].values == (("height.level", 0.125),)
@@ -657,7 +657,7 @@ def test_a_file_changed_meanwhile_is_reported(desk: Desk) -> None:
     desk.session.drafts.set("height.level", 0.5)
     text = HISTORY_SKETCH.replace("size = 33", "size = 17")
     (desk.folder / "sketch.toml").write_text(text, encoding="utf-8")
-    desk.bench.commands.save_values()
+    desk.bench.actions.save_values()
     assert "changed meanwhile" in desk.messages and desk.text == text
 
 
@@ -666,9 +666,9 @@ def test_a_shipped_sketch_is_offered_as_a_copy(tmp_path: Path, any_engine: Engin
     before = (SKETCHES / "white_noise.toml").read_bytes()
     desk.session.drafts.set("height.seed", 4)
     picture = desk.frame()
-    desk.bench.commands.save_values()
+    desk.bench.actions.save_values()
     assert desk.bench.file.offer == "This sketch belongs to the playground itself."
-    desk.bench.commands.save_a_copy()
+    desk.bench.actions.save_a_copy()
     np.testing.assert_array_equal(desk.frame(), picture)
     assert desk.session.path == tmp_path / "white_noise" / "sketch.toml"
     assert desk.session.shown is not None and desk.session.shown.edits.values == ()
@@ -689,14 +689,14 @@ def test_an_elevation_file_is_saved_as_a_sketch_beside_it(tmp_path, any_engine, 
         desk.session.drafts.choose("light", "lighting/l_dot_n")
         desk.session.drafts.set("weights.rock_slope", 41.0)
     picture = desk.frame()
-    desk.bench.commands.save_values()
+    desk.bench.actions.save_values()
     assert f"saved dem.toml in {dem.parent}" in desk.messages and not desk.bench.file.asks
     assert desk.session.path == dem.with_name("dem.toml") and dem.read_bytes() == before
     np.testing.assert_array_equal(desk.frame(), picture)
     saved = load(dem.with_name("dem.toml"))
     assert saved.graph.find("light").use == ("lighting/l_dot_n" if edited else "lighting/ray_cast")
     assert dict(saved.graph.find("weights").values)["rock_slope"] == (41.0 if edited else 30.0)
-    desk.bench.commands.save_values()
+    desk.bench.actions.save_values()
     assert "nothing differs from the file" in desk.messages
 
 

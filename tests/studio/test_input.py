@@ -241,14 +241,14 @@ def test_keys_typed_before_field_gets_focus_go_to_field(layers_bare: Bare) -> No
 
 def test_letters_typed_right_behind_the_search_are_no_shortcuts(layers_bare: Bare) -> None:
     io = imgui.get_io()
-    shown, saved = layers_bare.session.view.map, layers_bare.bench.commands.saved_picture
+    shown, saved = layers_bare.session.view.map, layers_bare.bench.actions.saved_picture
     for letter, key in (("/", imgui.Key.slash), ("m", imgui.Key.m), ("s", imgui.Key.s), ("a", imgui.Key.a)):
         io.add_key_event(key, True)
         io.add_input_character(ord(letter))
         layers_bare.run_frames()
         io.add_key_event(key, False)
     layers_bare.run_frames(4)
-    assert layers_bare.session.view.map is shown and layers_bare.bench.commands.saved_picture is saved
+    assert layers_bare.session.view.map is shown and layers_bare.bench.actions.saved_picture is saved
     assert not layers_bare.bench.inspection.compare.on
     assert layers_bare.panel.memory.filter.search == "msa"
 

@@ -230,21 +230,21 @@ def test_ctrl_s_saves(bare: Bare, folder: Path) -> None:
     bare.run_frames(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
     assert "set = { level = 0.25 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
-    assert bare.bench.commands.saved_picture is None, "and no picture"
+    assert bare.bench.actions.saved_picture is None, "and no picture"
 
 
 def test_pictures_never_replace_one_another(bare: Bare, folder: Path) -> None:
     names = []
     for _ in range(3):
         bare.key(imgui.Key.s)
-        names.append(bare.bench.commands.saved_picture.name)  # type: ignore[union-attr]
+        names.append(bare.bench.actions.saved_picture.name)  # type: ignore[union-attr]
     stem = bare.session.sketch.name  # type: ignore[union-attr]
     assert names == [f"{stem}.png", f"{stem}-2.png", f"{stem}-3.png"]
     assert sorted(p.name for p in folder.glob("*.png")) == sorted(names)
-    bare.bench.commands.folder = folder / "none"
+    bare.bench.actions.folder = folder / "none"
     bare.key(imgui.Key.s)
     assert "nothing can be written here" in bare.bench.notices.items[-1].text
-    assert bare.bench.commands.saved_picture.name == names[-1]  # type: ignore[union-attr]
+    assert bare.bench.actions.saved_picture.name == names[-1]  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 1.0), ((2560, 1440), 2.0)])
@@ -360,7 +360,7 @@ def test_dropped_dem_opens_alone_and_saves_sketch_beside_it(bare: Bare, folder: 
     assert bare.drops.waiting == [] and bare.session.path == dem
     bare.session.drafts.set("weights.rock_slope", 41.0)
     before = dem.read_bytes()
-    bare.bench.commands.save_values()
+    bare.bench.actions.save_values()
     assert bare.session.path == folder / "dem.toml" and dem.read_bytes() == before
     assert "rock_slope = 41" in (folder / "dem.toml").read_text("utf-8")
     assert 'elevation = "dem.npy"' in (folder / "dem.toml").read_text("utf-8")
@@ -454,7 +454,7 @@ def test_an_image_has_no_place_where_nothing_takes_a_file(bare: Bare, folder: Pa
 
 def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, open_bare: OpenBare) -> None:
     bare = open_bare(SKETCHES / "white_noise.toml")
-    bare.bench.commands.folder = tmp_path
+    bare.bench.actions.folder = tmp_path
     bare.session.drafts.set("height.seed", 4)
     bare.run_frames(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)

@@ -35,7 +35,7 @@ def pasting(bare: Bare, folder: Path) -> Iterator[Bare]:
     """Give the panel with a memory of each sketch, as the window has it."""
     memory = memory_of(folder / "sketch.toml", folder / "state")
     autosave = Autosave(bare.session, memory, now=lambda: bare.time)
-    bare.bench.commands.opens = autosave.open  # type: ignore[assignment]
+    bare.bench.actions.opens = autosave.open  # type: ignore[assignment]
     bare.autosave = autosave  # type: ignore[attr-defined]
     bare.run_frames(2)
     autosave.look((900, 600))

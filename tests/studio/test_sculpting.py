@@ -19,7 +19,7 @@ from playground.engine.on_arrays import OnArrays
 from playground.engine.textures import read_texture
 from playground.errors import DataError, ParameterError, SketchError
 from playground.sketch.techniques import read_technique
-from playground.studio.actions import Commands
+from playground.studio.actions import Actions
 from playground.studio.edits.undo import Undo
 from playground.studio.notices import Notices
 from playground.studio.paint.brush import APPROACH, RISE, SHARPEN, TOOLS, Brush, Dab, sculpt
@@ -761,16 +761,16 @@ def test_saving_reports_a_painting_that_cannot_be_written(
     assert not painting.settle()
     assert list(session.notes) == ["no space left on device"]
     file = SketchFile(session, notices)
-    commands = Commands(session, notices, Undo(session, notices, painting, file), file, tmp_path)
+    actions = Actions(session, notices, Undo(session, notices, painting, file), file, tmp_path)
     missed = "; what was painted last could not be written, and is not in it"
-    acts = commands.save_values, commands.save_values, commands.save_a_copy
+    acts = actions.save_values, actions.save_values, actions.save_a_copy
     for act, begins in zip(acts, ("saved 1 value into ", "nothing differs ", "saved a copy "), strict=True):
         act()
         session.frame(PICTURE)
         message = notices.items[-1].text
         assert message.startswith(begins) and message.endswith(missed), message
     monkeypatch.setattr(layer, "kind", NUMBERS)
-    commands.save_values()
+    actions.save_values()
     assert not notices.items[-1].text.endswith(missed)
     assert painting.settle()
     painting.close()

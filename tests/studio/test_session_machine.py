@@ -263,7 +263,7 @@ class SessionMachine(RuleBasedStateMachine):
         self.frame()
 
     def preset(self) -> None:
-        self.harness.bench.commands.set_all("Preset", PRESET)
+        self.harness.bench.actions.set_all("Preset", PRESET)
         if self.has_level and LOCK not in self.model.state:
             self.edit_now({VALUE: PRESET[LEVEL]})
         self.frame()
@@ -382,7 +382,7 @@ class SessionMachine(RuleBasedStateMachine):
         if dropped:
             self.harness.drops.take([path / "sketch.toml"])
         else:
-            self.harness.bench.commands.open(path)
+            self.harness.bench.actions.open(path)
         self.opened = name
         if self.is_opening:
             self.pending = []

@@ -544,7 +544,7 @@ def open_sketch(reader: Reader, name: str) -> None:
     reader.bugs.close_all(drawn=False)
     figure.forget_figure()
     bench.interface.panel_shown = True
-    opens: Callable[[Path], object] = reader.play or bench.commands.open
+    opens: Callable[[Path], object] = reader.play or bench.actions.open
     opens(path)
     if bench.session.drafts.opening:  # else it is open already
         bench.undo.begin(History())

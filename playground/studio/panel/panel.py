@@ -17,7 +17,7 @@ from playground.paths import shown
 from playground.shader.parameter import spell, write
 from playground.sketch.model import Preset, Sketch
 from playground.studio import theme
-from playground.studio.actions import Commands
+from playground.studio.actions import Actions
 from playground.studio.bench import Workbench
 from playground.studio.cost.panel import draw_costs
 from playground.studio.draw import (
@@ -176,7 +176,7 @@ def draw_head(memory: PanelState, bench: Workbench, look: Theme) -> None:
         return
     _buttons(memory, bench, look)
     if sketch.presets:
-        _presets(sketch, memory, bench.commands)
+        _presets(sketch, memory, bench.actions)
     _shown_texture(session)
 
 
@@ -191,18 +191,18 @@ def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
     with styled(sizes=sizes):
         _undo(memory, bench.undo, look)
         imgui.same_line()
-        _randomise(memory, bench.commands)
+        _randomise(memory, bench.actions)
         imgui.same_line()
         if button("A/B", "Keep this as A, go on with B, and compare the two; or no longer (A)"):
             bench.inspection.compare.toggle()
-        _resets(bench.commands)
+        _resets(bench.actions)
         imgui.same_line()
-        _copies(memory, bench.commands)
+        _copies(memory, bench.actions)
         imgui.same_line()
-        _saves(memory, bench.commands)
+        _saves(memory, bench.actions)
         imgui.same_line()
-        if button("PNG", f"Save the picture as a new file in {bench.commands.folder} (S)"):
-            bench.commands.save_picture()
+        if button("PNG", f"Save the picture as a new file in {bench.actions.folder} (S)"):
+            bench.actions.save_picture()
         imgui.same_line()
         if button("Graph", "The passes as a graph, or no longer (G)"):
             bench.inspection.graph.toggle()
@@ -278,14 +278,14 @@ def draw_history(memory: PanelState, undo: Undo, look: Theme) -> None:
 # ── random values ────────────────────────────────────────────────────────────
 
 
-def _randomise(memory: PanelState, commands: Commands) -> None:
+def _randomise(memory: PanelState, actions: Actions) -> None:
     with menu("Random", "random", "Random values, from a seed") as opened:
         if opened:
-            _random_values(memory, commands)
+            _random_values(memory, actions)
 
 
-def _random_values(memory: PanelState, commands: Commands) -> None:
-    draft = commands.session.shown
+def _random_values(memory: PanelState, actions: Actions) -> None:
+    draft = actions.session.shown
     _, memory.seed = imgui.input_int("Seed", memory.seed)
     strength = slide("##strength", memory.strength, (0.01, 0.5), "%.2f")
     memory.strength = memory.strength if strength is None else strength
@@ -299,12 +299,12 @@ def _random_values(memory: PanelState, commands: Commands) -> None:
     if draft is not None:
         values = shown_values(draft)
         if button("Random values"):
-            commands.set_all(f"Random, seed {memory.seed}", at_random(chosen, memory.seed))
+            actions.set_all(f"Random, seed {memory.seed}", at_random(chosen, memory.seed))
             memory.seed += 1
         imgui.same_line()
         if button("Mutate"):
             near = mutated(chosen, values.of, memory.seed, memory.strength)
-            commands.set_all(f"Mutation, seed {memory.seed}", near)
+            actions.set_all(f"Mutation, seed {memory.seed}", near)
             memory.seed += 1
     imgui.text_disabled(f"{counted(len(chosen), 'parameter')}: {what}")
 
@@ -312,8 +312,8 @@ def _random_values(memory: PanelState, commands: Commands) -> None:
 # ── resets, copies, saves ────────────────────────────────────────────────────
 
 
-def _resets(commands: Commands) -> None:
-    session = commands.session
+def _resets(actions: Actions) -> None:
+    session = actions.session
     with menu("Reset", "resets", "Back to what the file says") as opened:
         if not opened:
             return
@@ -322,51 +322,51 @@ def _resets(commands: Commands) -> None:
         if imgui.menu_item_simple("View", "R", False, edits.camera is not None):
             session.drafts.set_camera(None)
         if imgui.menu_item_simple("All values and techniques", "", False, touched):
-            commands.reset_values()
+            actions.reset_values()
         if imgui.menu_item_simple("Locks", "", False, bool(edits.locked)):
             for path in edits.locked:
                 session.drafts.lock(path, False)
 
 
-def _copies(memory: PanelState, commands: Commands) -> None:
+def _copies(memory: PanelState, actions: Actions) -> None:
     with menu("Copy", "copies", "What differs from the file, to the clipboard") as opened:
         if not opened:
             return
-        draft = commands.session.shown
+        draft = actions.session.shown
         if draft is not None and imgui.menu_item_simple("As --set words", "", False, bool(draft.applied)):
             text = set_words(draft)
             imgui.set_clipboard_text(text)
-            commands.notices.say(f"copied {fitting(text, 320.0)}")
+            actions.notices.say(f"copied {fitting(text, 320.0)}")
         if imgui.menu_item_simple("As TOML"):
-            commands.copy_toml(imgui.set_clipboard_text)
+            actions.copy_toml(imgui.set_clipboard_text)
 
 
-def _saves(memory: PanelState, commands: Commands) -> None:
+def _saves(memory: PanelState, actions: Actions) -> None:
     with menu("Save", "saves", "What differs from the file, into the file") as opened:
         if opened:
             if imgui.menu_item_simple("Into the sketch", "Ctrl+S"):
-                commands.save_values()
-            is_copy = commands.copy_is[0] == "Save a copy"
+                actions.save_values()
+            is_copy = actions.copy_is[0] == "Save a copy"
             if imgui.menu_item_simple("As a copy in the current folder" if is_copy else "As a new sketch"):
-                commands.save_a_copy()
+                actions.save_a_copy()
             imgui.separator()
-            _preset_to_save(memory, commands)
-    if commands.file.asks:
-        commands.file.asks = False
+            _preset_to_save(memory, actions)
+    if actions.file.asks:
+        actions.file.asks = False
         imgui.open_popup("offer")
     if imgui.begin_popup("offer"):
-        imgui.text_unformatted(commands.file.offer)
-        done = button(*commands.copy_is)
+        imgui.text_unformatted(actions.file.offer)
+        done = button(*actions.copy_is)
         if done:
-            commands.save_a_copy()
+            actions.save_a_copy()
         imgui.same_line()
         if button("Cancel") or done:
-            commands.file.offer = ""
+            actions.file.offer = ""
             imgui.close_current_popup()
         imgui.end_popup()
 
 
-def _preset_to_save(memory: PanelState, commands: Commands) -> None:
+def _preset_to_save(memory: PanelState, actions: Actions) -> None:
     imgui.set_next_item_width(imgui.get_font_size() * 9)
     enter = imgui.InputTextFlags_.enter_returns_true
     hint = "name of a preset"
@@ -374,7 +374,7 @@ def _preset_to_save(memory: PanelState, commands: Commands) -> None:
     imgui.same_line()
     name = memory.preset_name.strip()
     if button("Save preset", enabled=bool(name)) or (entered and name):
-        commands.save_as_preset(name)
+        actions.save_as_preset(name)
         memory.preset = name
         imgui.close_current_popup()
 
@@ -382,7 +382,7 @@ def _preset_to_save(memory: PanelState, commands: Commands) -> None:
 # ── rows ─────────────────────────────────────────────────────────────────────
 
 
-def _presets(sketch: Sketch, memory: PanelState, commands: Commands) -> None:
+def _presets(sketch: Sketch, memory: PanelState, actions: Actions) -> None:
     active = next((p for p in sketch.presets if _differing(sketch, p) == []), None)
     if active is not None:
         memory.preset = active.name
@@ -396,7 +396,7 @@ def _presets(sketch: Sketch, memory: PanelState, commands: Commands) -> None:
         preset = choose("##preset", fitting_choice(text), sketch.presets, active, name=lambda p: p.name)
     if preset is not None:
         memory.preset = preset.name
-        commands.apply_preset(preset.name)
+        actions.apply_preset(preset.name)
 
 
 def _differing(sketch: Sketch, preset: Preset) -> list[str]:

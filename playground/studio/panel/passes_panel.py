@@ -16,7 +16,7 @@ from playground.shader.parameter import label_of, write
 from playground.sketch.model import PassSpec, Sketch, TexelKernel, kernels_of
 from playground.sketch.replace_technique import choices
 from playground.studio import theme
-from playground.studio.actions import Commands
+from playground.studio.actions import Actions
 from playground.studio.bench import Workbench
 from playground.studio.channels.channels import channels
 from playground.studio.channels.panel import ChannelRows
@@ -230,7 +230,7 @@ class Sections:
             imgui.text_disabled("no parameter is like that")
         rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, look, bench.controllers)
         reasons = bench.inspection.reasons
-        drawing = _Drawing(Path(sketch.folder), rows, bench.commands, bench.files, reasons)
+        drawing = _Drawing(Path(sketch.folder), rows, bench.actions, bench.files, reasons)
         main = main_items(draft.base) if not memory.filter else ()
         if main:
             drawing.main(main)
@@ -286,7 +286,7 @@ class _Drawing:
 
     folder: Path
     rows: Rows
-    commands: Commands
+    actions: Actions
     files: OpenFiles
     reasons: RunReasons
 
@@ -393,7 +393,7 @@ class _Drawing:
         imgui.same_line(imgui.get_window_width() - imgui.get_style().scrollbar_size - slot())
         note = f"{counted(len(paths), 'parameter')} back to the file's values"
         if cross(f"##reset {name}", note, high):
-            self.commands.reset(name, paths)
+            self.actions.reset(name, paths)
 
 
 def _files(spec: PassSpec, files: OpenFiles) -> None:

@@ -338,7 +338,7 @@ class Controls:
             near = nearest(str(name), names) or "; this sketch has none"
             raise ParameterError(f"no preset {spell(name)}{near}")
         self.flush()
-        self.bench.commands.apply_preset(str(name))
+        self.bench.actions.apply_preset(str(name))
 
     def undo(self) -> None:
         """Undo the last step of the window's history."""
