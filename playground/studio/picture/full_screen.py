@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import moderngl
 
 
-class FullScreen:
+class ScreenQuad:
     """A program that is drawn with a triangle over all of an area; the context is its caller's."""
 
     def __init__(self, ctx: moderngl.Context, fragment_shader: str) -> None:
@@ -59,7 +59,7 @@ class FullScreen:
         self._program.release()
 
 
-class TexelShader(FullScreen):
+class TexelShader(ScreenQuad):
     """Computes a few texels, rgba32f, with a fragment shader; the context is its caller's."""
 
     def __init__(self, ctx: moderngl.Context, fragment_shader: str, size: tuple[int, int]) -> None:
@@ -85,7 +85,7 @@ class Enlarger:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx
-        self._shaders: dict[tuple[str, bool], FullScreen] = {}  # by the way, and whether it is grey
+        self._shaders: dict[tuple[str, bool], ScreenQuad] = {}  # by the way, and whether it is grey
         self._wide: moderngl.Texture | None = None  # enlarged along its rows
         self._surface: moderngl.Framebuffer | None = None
 
@@ -101,11 +101,11 @@ class Enlarger:
         self._along("1, 0", grey).draw(self._surface, {"picture": picture}, times=rows)
         self._along("0, 1", False).draw(target, {"picture": self._wide}, times=columns)
 
-    def _along(self, way: str, grey: bool) -> FullScreen:
+    def _along(self, way: str, grey: bool) -> ScreenQuad:
         """Return the program that enlarges along rows, "1, 0", or along columns, "0, 1"."""
         if (way, grey) not in self._shaders:
             text = own_part("enlarged.frag", way=way, grey=str(grey).lower())
-            self._shaders[way, grey] = FullScreen(self.ctx, text)
+            self._shaders[way, grey] = ScreenQuad(self.ctx, text)
         return self._shaders[way, grey]
 
     def release(self) -> None:
@@ -122,7 +122,7 @@ class Enlarger:
         self._surface = self._wide = None
 
 
-class Blend(FullScreen):
+class Blend(ScreenQuad):
     """Paints two pictures into a framebuffer."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
@@ -151,7 +151,7 @@ class Painter:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx
-        self._shader = FullScreen(ctx, own_shader("show_image.frag"))
+        self._shader = ScreenQuad(ctx, own_shader("show_image.frag"))
 
     def paint(
         self, texture: moderngl.Texture, target: moderngl.Framebuffer, area: tuple[int, int, int, int]
