@@ -32,7 +32,7 @@ from playground.sketch.assign import range_of
 from playground.sketch.model import Parameter, Value
 from playground.studio.panel.values import check_range, value_fraction, with_fraction
 from playground.studio.remote.controllers import read_bindings
-from playground.studio.remote.controls import MAX_WAITING, Behind, Busy, Calls, Controls
+from playground.studio.remote.controls import MAX_WAITING, Busy, Calls, Controls, PictureNotReady
 from playground.studio.remote.osc import Addresses
 from playground.studio.remote.remotes import RemoteOptions, Remotes
 
@@ -665,7 +665,7 @@ def test_what_is_asked_by_chance_ends_in_a_sentence_at_worst(harness: Harness, s
 def test_a_picture_that_is_not_there_yet_is_said_once(harness: Harness, source: str, what: str):
     harness.frame()
     harness.session.catch_up.behind, harness.session.catch_up.source = (5, 36_001), source
-    with pytest.raises(Behind) as met:
+    with pytest.raises(PictureNotReady) as met:
         Controls(harness.bench).picture()
     assert str(met.value) == f"there is no picture yet: the window {what}"
 

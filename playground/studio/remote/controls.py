@@ -251,7 +251,7 @@ MAX_SPEED = 100.0
 _MAX_TIME = 1e9  # [s] that time may be set to
 
 
-class Behind(SketchError):
+class PictureNotReady(SketchError):
     """The window computes the frames before its picture: to draw that at once would hold it up."""
 
 
@@ -383,7 +383,7 @@ class Controls:
         """Return the picture: the window's own, or drawn at another size [pixels].
 
         Raises ``SketchError`` before the first, ``ParameterError`` for a size that is too large, and
-        ``Behind`` while frames before it are computed: ask again.
+        ``PictureNotReady`` while frames before it are computed: ask again.
         """
         self.flush()
         session, sketch = self.session, self.session.sketch
@@ -395,7 +395,7 @@ class Controls:
                 if source
                 else f"computes frame {done:,} of {total:,}"
             )
-            raise Behind(f"there is no picture yet: the window {what}")
+            raise PictureNotReady(f"there is no picture yet: the window {what}")
         if size is None or sketch is None:
             frame = session.read()
             if frame is None:

@@ -35,7 +35,7 @@ from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.json_text import read_json
 from playground.local_server import BACKLOG, HEADERS, MAX_SILENCE, Guard, Unauthenticated
-from playground.studio.remote.controls import MAX_REMOTE_SIDE, Behind, Busy, Calls, Controls
+from playground.studio.remote.controls import MAX_REMOTE_SIDE, Busy, Calls, Controls, PictureNotReady
 
 MAX_REQUEST_BYTES = 2**16
 """[bytes] of a request's body, or of one message."""
@@ -161,7 +161,7 @@ class Server:
         except web.HTTPException as error:
             path = request.path.removeprefix(f"/{self.guard.token}")
             answer = _error(error.status, f"{error.reason}: {request.method} {path}")
-        except (Busy, Behind) as error:
+        except (Busy, PictureNotReady) as error:
             answer = _error(503, str(error))
         except PlaygroundError as error:
             answer = _error(400, str(error))
@@ -217,7 +217,7 @@ class Server:
             try:
                 frame: Frame = await self._ask(lambda: self._controls.picture(size))
                 return frame
-            except Behind:
+            except PictureNotReady:
                 if clock() > end:
                     raise
                 await asyncio.sleep(_PAUSE)
