@@ -250,7 +250,7 @@ class Refused(FailureKind):
         return before.kind == after.kind and after.messages <= before.messages
 
 
-class Died(FailureKind):
+class DriverFailure(FailureKind):
     """The driver crashes or hangs."""
 
     def __init__(self, kind: str = "", driver: str = "auto") -> None:
@@ -386,7 +386,7 @@ class OffReference(FailureKind):
         return Finding("off its reference", details, self.wrong)
 
 
-class Commanded(FailureKind):
+class CommandFailure(FailureKind):
     """A command of the user's says that a candidate fails."""
 
     sides = ()
@@ -440,7 +440,7 @@ class Probe:
     def find(self, case: Case) -> Finding | None:
         """Return how a case fails; None where it does not, or not in this way."""
         self.write(case)
-        if isinstance(self.failure, Commanded):
+        if isinstance(self.failure, CommandFailure):
             return self._commanded(self.failure.command)
         results: list[DrawResult] = []
         for side in self.failure.sides:

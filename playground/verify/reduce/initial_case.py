@@ -20,10 +20,10 @@ from playground.sketch.model import Sketch
 from playground.verify.reduce.candidate import (
     LIMIT,
     CandidateProcess,
-    Commanded,
-    Died,
+    CommandFailure,
     Differs,
     DrawTask,
+    DriverFailure,
     FailureKind,
     Finding,
     NotFinite,
@@ -135,7 +135,7 @@ class CandidateBench:
         """Yield what may be the failure, and where, in the order in which it is looked for."""
         question = self.question
         if question.criterion.kind == "command":
-            yield Commanded(question.criterion.command), self._chosen(case)[-1]
+            yield CommandFailure(question.criterion.command), self._chosen(case)[-1]
         elif question.criterion.kind == "shot":
             yield self._off_reference(), case
         elif question.criterion.kind:
@@ -186,7 +186,7 @@ class CandidateBench:
         if kind == "error":
             return [Refused(question.criterion.pattern, driver) for driver in drivers]
         word = kind if question.criterion.kind else ""  # a hang counts too where no kind was named
-        return [Died(word, driver) for driver in drivers]
+        return [DriverFailure(word, driver) for driver in drivers]
 
     def _off_reference(self) -> FailureKind:
         question = self.question

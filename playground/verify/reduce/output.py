@@ -19,9 +19,9 @@ from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 from playground.verify.reduce.candidate import (
     CandidateProcess,
-    Commanded,
-    Died,
+    CommandFailure,
     DrawTask,
+    DriverFailure,
     FailureKind,
     Finding,
     Probe,
@@ -129,7 +129,7 @@ def readme_text(account: Account, folder: Path) -> str:
 def to_reproduce(question: Question, folder: Path, case: Case, failure: FailureKind) -> tuple[str, ...]:
     """Return the commands that show the failure of what is left, from the folder that holds the folder."""
     name = quoted(folder.name)
-    if isinstance(failure, Commanded):
+    if isinstance(failure, CommandFailure):
         return (f"cd {name}", failure.command)
     path = name if case.file == "sketch.toml" else f"{name}/{case.file}"
     shot = f" --shot {SHOT}" if case.file == "sketch.toml" else ""
@@ -157,7 +157,7 @@ def plain_texts(case: Case, probe: Probe, finding: Finding, process: CandidatePr
     folder must hold the case. Raises ``DataError`` for a failure that is not the compiler's.
     """
     failure = probe.failure
-    if not isinstance(failure, Refused | Died):
+    if not isinstance(failure, Refused | DriverFailure):
         raise DataError("--plain is for what the compiler refuses, or dies of")
     graph = load(probe.folder / case.file).graph
     kernel = next(kernel for path, kernel in kernels_of(graph) if path in (case.target, "view"))

@@ -183,7 +183,7 @@ class State:
     seconds: float
 
 
-class Enough(Exception):
+class LimitReached(Exception):
     """The limit of time or of tries is reached."""
 
 
@@ -226,7 +226,7 @@ class Search:
                 if self.best == before:
                     self.finished = True
                     return True
-        except Enough:
+        except LimitReached:
             return False
 
     def holds(self, case: Case, *, resized: bool = False) -> bool:
@@ -243,9 +243,9 @@ class Search:
                 self.best = case
             return cached
         if self._limit and time.monotonic() - self._start > self._limit:
-            raise Enough
+            raise LimitReached
         if self._most and self.tries >= self._most:
-            raise Enough
+            raise LimitReached
         if not _undefined(case) <= self._undefined:
             self._known[key] = False
             return False

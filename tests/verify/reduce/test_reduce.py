@@ -21,10 +21,10 @@ from playground.sketch.variants import NAME
 from playground.verify.reduce import initial_case
 from playground.verify.reduce.candidate import (
     CandidateProcess,
-    Died,
     Differs,
     DrawResult,
     DrawTask,
+    DriverFailure,
     FailureKind,
     NotFinite,
     OffReference,
@@ -440,7 +440,7 @@ def test_a_crash_of_the_compiler_stays(sketch, worker, tmp_path):
         "float kernel(ivec2 texel) { float x = float(texel.x); float y = other(x); return M4 + y; }\n"
     )
     before = worker.started
-    search = shrink(path, Died("crash"), worker, tmp_path / "scratch")
+    search = shrink(path, DriverFailure("crash"), worker, tmp_path / "scratch")
     assert worker.started > before
     assert "M4" in text_of(search)
     assert "other" not in text_of(search)
@@ -464,7 +464,7 @@ def test_a_hang_stays(sketch, tmp_path):
         folder = tmp_path / "scratch"
         folder.mkdir()
         case = inline_sketch(load(path), frame=(8, 8)).looking_at("height")
-        probe = Probe(Died("hang"), [impatient], folder, 1.0)
+        probe = Probe(DriverFailure("hang"), [impatient], folder, 1.0)
         finding = probe.find(case)
         assert finding is not None
         search = Search(case, finding, probe, tries=12)
