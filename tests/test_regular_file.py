@@ -19,7 +19,7 @@ from playground.data.models import read_model
 from playground.data.vectors import read_vectors
 from playground.errors import PlaygroundError
 from playground.flight.record import read_record
-from playground.publish.export_form import refuse_foreign_files
+from playground.publish.export_formats import refuse_foreign_files
 from playground.shader.source import read_source, read_text
 from playground.sketch.files import find_file
 from playground.sketch.find import find

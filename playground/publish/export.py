@@ -24,7 +24,7 @@ from playground.engine.engine import Engine
 from playground.engine.plan import Plan, view_input
 from playground.errors import DataError, SketchError
 from playground.files import replacing
-from playground.publish.export_form import (
+from playground.publish.export_formats import (
     COLOUR,
     DEFAULT_GRID,
     HEIGHT,
@@ -34,7 +34,7 @@ from playground.publish.export_form import (
     PICTURES,
     RAW,
     SHADERS,
-    Form,
+    ExportOptions,
     bits_for,
     check,
     height_of,
@@ -77,7 +77,7 @@ class ExportJob:
 
     sketch: Sketch
     path: Path
-    form: Form
+    options: ExportOptions
     plan: Plan
     texture: str  # of the values, or draped over the mesh; "" for a mesh without one
     kind: str
@@ -114,19 +114,19 @@ def export(
     the ``texture`` named; ``.webp`` and ``.jpg`` colours; ``.glb`` and ``.obj`` the terrain with its
     texture; ``.fs``, ``.frag``, ``.json`` and ``.glsl`` the picture, or a texture, as a shader; ``.html`` is
     a web page in which the whole sketch runs. Rows come from the north. The other arguments are those
-    of ``Form``; ``time``, in seconds, and ``steps`` are as in ``Engine.render``. A file of that name is
-    replaced, whole or not at all. Without an ``engine`` one is opened.
+    of ``ExportOptions``; ``time``, in seconds, and ``steps`` are as in ``Engine.render``. A file of that
+    name is replaced, whole or not at all. Without an ``engine`` one is opened.
 
-    Those of ``Form``: ``kind`` of the numbers, ``bits`` a number, ``span`` of a PNG's black and white,
-    ``grid`` of a mesh, its ``light``, ``techniques`` and ``language`` of a page. ``sketch`` is a loaded
-    one, or what ``load`` takes. Returns the path with a summary.
+    Those of ``ExportOptions``: ``kind`` of the numbers, ``bits`` a number, ``span`` of a PNG's black and
+    white, ``grid`` of a mesh, its ``light``, ``techniques`` and ``language`` of a page. ``sketch`` is a
+    loaded one, or what ``load`` takes. Returns the path with a summary.
 
         exported = playground.export("l_dot_n", "land.tif")
         print(exported.path, exported.summary)
 
     Raises ``PlaygroundError`` for any mistake in the arguments, or a file that cannot be written.
     """
-    form = Form(
+    options = ExportOptions(
         texture=texture,
         kind=kind,
         bits=bits,
@@ -137,16 +137,16 @@ def export(
         language=language,
     )
     opened_sketch = opened(sketch)
-    check(Path(path), form)
+    check(Path(path), options)
     with nullcontext(engine) if engine is not None else headless() as used:
-        return run(used, prepare(used, opened_sketch, Path(path), form, time=time, steps=steps))
+        return run(used, prepare(used, opened_sketch, Path(path), options, time=time, steps=steps))
 
 
 def prepare(
     engine: Engine,
     sketch: Sketch,
     path: Path,
-    form: Form,
+    options: ExportOptions,
     *,
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
@@ -156,17 +156,17 @@ def prepare(
 
     ``frame`` is the size in pixels that a web page begins with, where it is not the usual one.
     """
-    check(path, form)
+    check(path, options)
     if path.suffix.lower() in PAGES:
         plan = engine.plan(sketch, frame or DEFAULT_PICTURE, time, steps)
-        page = prepare_page(engine, sketch, path, form.techniques, frame=frame, time=time, steps=steps)
-        return ExportJob(sketch=sketch, path=path, form=form, plan=plan, texture="", kind="", page=page)
+        page = prepare_page(engine, sketch, path, options.techniques, frame=frame, time=time, steps=steps)
+        return ExportJob(sketch=sketch, path=path, options=options, plan=plan, texture="", kind="", page=page)
     if path.suffix.lower() in SHADERS:
-        return _prepare_shader(engine, sketch, path, form, time, steps)
+        return _prepare_shader(engine, sketch, path, options, time, steps)
     plan = engine.plan(sketch, DEFAULT_PICTURE, time, steps)
     if path.suffix.lower() in MESHES:
-        return _prepare_mesh(sketch, path, form, plan)
-    texture, kind = form.texture, form.kind
+        return _prepare_mesh(sketch, path, options, plan)
+    texture, kind = options.texture, options.kind
     if texture:
         plan.flat.ref(texture, sketch.name)
         kind = kind or kind_of(plan, texture)
@@ -175,7 +175,7 @@ def prepare(
     return ExportJob(
         sketch=sketch,
         path=path,
-        form=replace(form, bits=bits_for(path, kind, form)),
+        options=replace(options, bits=bits_for(path, kind, options)),
         plan=plan,
         texture=texture,
         kind=kind,
@@ -183,36 +183,48 @@ def prepare(
 
 
 def _prepare_shader(
-    engine: Engine, sketch: Sketch, path: Path, form: Form, time: float, steps: Mapping[str, int] | None
+    engine: Engine,
+    sketch: Sketch,
+    path: Path,
+    options: ExportOptions,
+    time: float,
+    steps: Mapping[str, int] | None,
 ) -> ExportJob:
     if steps:
         raise DataError("a shader's text has all steps of a repeat; leave --steps out", file=path)
-    made = shader_files(sketch, path, texture=form.texture, kind=form.kind, time=time)
+    made = shader_files(sketch, path, texture=options.texture, kind=options.kind, time=time)
     check_es(engine.ctx, path, made.files[path].decode())
     return ExportJob(
         sketch=sketch,
         path=path,
-        form=form,
+        options=options,
         plan=made.plan,
-        texture=form.texture,
-        kind=form.kind,
+        texture=options.texture,
+        kind=options.kind,
         shader=made,
     )
 
 
-def _prepare_mesh(sketch: Sketch, path: Path, form: Form, plan: Plan) -> ExportJob:
-    height, texture, kind = height_of(plan), form.texture, form.kind or COLOUR
+def _prepare_mesh(sketch: Sketch, path: Path, options: ExportOptions, plan: Plan) -> ExportJob:
+    height, texture, kind = height_of(plan), options.texture, options.kind or COLOUR
     if texture:
         plan.flat.ref(texture, sketch.name)
-        kind = form.kind or kind_of(plan, texture)
+        kind = options.kind or kind_of(plan, texture)
         kind = NUMBERS if kind == HEIGHT else kind  # 0 to 1 may be seen; metres would be all white
     else:
         texture = view_input(plan, "colour")
-    light = view_input(plan, "light") if form.light else ""
-    if form.light and not light:
+    light = view_input(plan, "light") if options.light else ""
+    if options.light and not light:
         raise SketchError(f"sketch {sketch.name} has no light to bake in")
     return ExportJob(
-        sketch=sketch, path=path, form=form, plan=plan, texture=texture, kind=kind, height=height, light=light
+        sketch=sketch,
+        path=path,
+        options=options,
+        plan=plan,
+        texture=texture,
+        kind=kind,
+        height=height,
+        light=light,
     )
 
 
@@ -223,7 +235,7 @@ def run(engine: Engine, job: ExportJob) -> Exported:
         sidecars = tuple(path for path in job.shader.files if path != job.path)
         return Exported(job.path, job.shader.summary, sidecars, job.shader.warnings)
     if job.page is not None:
-        html, summary = page_bytes(engine, job.sketch, job.page, job.form.language or "en")
+        html, summary = page_bytes(engine, job.sketch, job.page, job.options.language or "en")
         write_together({job.path: html})
         return Exported(job.path, summary, (), job.page.warnings)
     return _write_mesh(engine, job) if job.ending in MESHES else _write_values(engine, job)
@@ -257,13 +269,13 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
     rows, cols = values.shape[:2]
     spacing = _spacing(job, (cols, rows))
     with naming(job.path):
-        span = job.form.span
+        span = job.options.span
         if span is None and job.kind == COLOUR and is_light(job.plan, job.texture):
-            span = light_span(values) if whole_numbers(job.ending, job.form.bits) else None
+            span = light_span(values) if whole_numbers(job.ending, job.options.bits) else None
         if job.ending in PICTURES:
             made = encode_picture(values, job.ending, span or (0.0, 1.0))
         else:
-            layer = Layer(values, job.kind, spacing, job.form.bits, span, _place(job))
+            layer = Layer(values, job.kind, spacing, job.options.bits, span, _place(job))
             made = encode(layer, job.ending)
     files = {job.path: made.data}
     sidecars = tuple(sidecar_paths(job.path)) if made.sidecar else ()
@@ -289,7 +301,7 @@ def _place(job: ExportJob) -> Georeference | None:
 
 def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     heights = _read(engine, job, job.height, HEIGHT)
-    grid = job.form.grid or min(DEFAULT_GRID, MESHES[job.ending])
+    grid = job.options.grid or min(DEFAULT_GRID, MESHES[job.ending])
     size = fitted((heights.shape[1], heights.shape[0]), grid)
     baked, texels, warning = _texture(engine, job)
     extent = job.plan.terrain.extent
@@ -316,7 +328,7 @@ def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
         f"texture {texels[0]} x {texels[1]}" if texels else _NO_TEXTURE,
     ]
     notes = [warning]
-    if job.form.grid > max(size):
+    if job.options.grid > max(size):
         notes.append(
             f"the terrain has {max(size)} texels on its longer side, so the mesh has no more vertices"
         )

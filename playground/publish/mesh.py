@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
-from playground.publish.export_form import one_word
+from playground.publish.export_formats import one_word
 
 
 @dataclass(frozen=True, eq=False)

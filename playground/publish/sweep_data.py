@@ -26,7 +26,7 @@ from playground.engine.process.pool import Pool
 from playground.engine.process.worker import Parent, Service
 from playground.errors import ParameterError, PlaygroundError
 from playground.extras import needs
-from playground.publish.export_form import HEIGHT, kind_of
+from playground.publish.export_formats import HEIGHT, kind_of
 from playground.publish.series import SWEEP_SIZE
 from playground.publish.sweep import Sweep, combinations, sweep_of
 from playground.sketch.load import opened

@@ -23,7 +23,7 @@ from playground.data.image_files import JPEG_QUALITY, encode_as, encode_samples
 from playground.data.place import Crs, Georeference, gdal, gdal_crs, horizontal
 from playground.data.values import clamped_note
 from playground.errors import DataError
-from playground.publish.export_form import COLOUR, HEIGHT, whole_numbers
+from playground.publish.export_formats import COLOUR, HEIGHT, whole_numbers
 from playground.shader.colours import linear_to_srgb
 
 if TYPE_CHECKING:

@@ -33,11 +33,11 @@ from playground.errors import (
     ShaderError,
     SketchError,
 )
-from playground.publish.export_form import DEFAULT_GRID, ENDINGS, KINDS, PIPED
+from playground.publish.export_formats import DEFAULT_GRID, ENDINGS, KINDS, PIPED
 from playground.terminal import busy, complain, note
 
 if TYPE_CHECKING:
-    from playground.publish.export_form import Form
+    from playground.publish.export_formats import ExportOptions
 
 
 HELP = help_text(
@@ -158,10 +158,10 @@ def export(
     device: options.Device = None,
 ) -> None:
     """Write the terrain or a texture to files, and print the files' paths."""
-    from playground.publish.export_form import Form
+    from playground.publish.export_formats import ExportOptions
     from playground.sketch.load import load
 
-    form = Form(
+    export_options = ExportOptions(
         texture=texture,
         kind=kind,
         bits=_read_whole("--bits", bits),
@@ -182,19 +182,24 @@ def export(
     )
     names, renderer = to or [], ctx.obj.or_else(software, device)
     if NAME in names:
-        _write_piped(moment, names, _read_format(form_named), form, driver, renderer)
+        _write_piped(moment, names, _read_format(form_named), export_options, driver, renderer)
     elif form_named:
         raise ParameterError("--format is for --to -; the name of a file says what it holds")
     else:
-        _write(moment, names, form, driver, renderer)
+        _write(moment, names, export_options, driver, renderer)
 
 
 def _write_piped(
-    moment: Moment, names: list[str], ending: str, form: Form, driver: str, renderer: Renderer
+    moment: Moment,
+    names: list[str],
+    ending: str,
+    export_options: ExportOptions,
+    driver: str,
+    renderer: Renderer,
 ) -> None:
     """Write one file to standard output, by way of a folder that is removed."""
     from playground.publish.export import prepare, run
-    from playground.publish.export_form import check
+    from playground.publish.export_formats import check
 
     if len(names) > 1:
         raise ParameterError("--to - writes one file to standard output; leave the other --to out")
@@ -202,11 +207,11 @@ def _write_piped(
     sketch = moment.sketch
     with TemporaryDirectory(prefix="playground-") as folder:
         path = Path(folder) / f"{sketch.name}{ending}"
-        check(path, form)
+        check(path, export_options)
         with busy(f"exporting {sketch.name}") as show, renderer.open_engine(driver=driver) as engine:
             engine.runner.works.on_progress = show
             at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "frame": moment.size}
-            done = run(engine, prepare(engine, sketch, path, form, **at))
+            done = run(engine, prepare(engine, sketch, path, export_options, **at))
         if done.sidecars:
             raise DataError(f"{', '.join(p.name for p in done.sidecars)} belong to it; name a file with --to")
         note(f"standard output: {done.summary}")
@@ -215,22 +220,24 @@ def _write_piped(
         write_file(done.path)
 
 
-def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: Renderer) -> None:
+def _write(
+    moment: Moment, names: list[str], export_options: ExportOptions, driver: str, renderer: Renderer
+) -> None:
     from playground.files import new_name
     from playground.publish.export import ExportJob, prepare, run
-    from playground.publish.export_form import check
+    from playground.publish.export_formats import check
 
     sketch = moment.sketch
     with ExitStack() as stack:
         paths = [Path(name).expanduser() for name in names]
         _refuse_twins(paths)
         if not paths:
-            check(Path(f"{sketch.name}.glb"), form)
+            check(Path(f"{sketch.name}.glb"), export_options)
             paths = [stack.enter_context(new_name(f"{sketch.name}.glb"))]
         errors, checked, jobs, count = dict[Diagnostic, None](), list[Path](), list[ExportJob](), 0
         for path in paths:
             with _collecting(errors):
-                check(path, form)
+                check(path, export_options)
                 checked.append(path)
         if checked:
             show = stack.enter_context(busy(f"exporting {sketch.name}"))
@@ -240,7 +247,7 @@ def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: 
         # Every file is prepared before the first is written.
         for path in checked:
             with _collecting(errors):
-                jobs.append(prepare(engine, sketch, path, form, **at))
+                jobs.append(prepare(engine, sketch, path, export_options, **at))
         for job in jobs:
             with _collecting(errors):
                 done = run(engine, job)
@@ -276,7 +283,7 @@ def _read_format(text: str) -> str:
 
 
 def _refuse_twins(paths: list[Path]) -> None:
-    from playground.publish.export_form import sidecar_paths
+    from playground.publish.export_formats import sidecar_paths
 
     taken: set[Path] = set()
     for path in paths:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from playground.engine.plan import Plan
 from playground.errors import DataError, ShaderError
 from playground.files import read_regular, reason
-from playground.publish.export_form import ISF, SHADERTOY_EXPORT, SHADERTOY_TEXT, kind_of
+from playground.publish.export_formats import ISF, SHADERTOY_EXPORT, SHADERTOY_TEXT, kind_of
 from playground.publish.shader_export import isf, shadertoy, standalone
 from playground.publish.shader_export.foreign import foreign_text
 from playground.publish.shader_export.passes import (

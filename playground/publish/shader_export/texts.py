@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from playground.engine.camera import unit_vector
-from playground.publish.export_form import COLOUR
+from playground.publish.export_formats import COLOUR
 from playground.publish.shader_export.declarations import (
     Declaration,
     declaration_of,

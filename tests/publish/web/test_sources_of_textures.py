@@ -8,7 +8,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.publish.export import prepare, run
-from playground.publish.export_form import Form
+from playground.publish.export_formats import ExportOptions
 from playground.sketch.model import Sketch
 
 from ...loading import load
@@ -44,7 +44,7 @@ def test_the_engine_of_an_export_makes_a_source_once(
     """Neither another technique nor the poster makes it again."""
     monkeypatch.setattr("playground.publish.web_page.read_bundle", lambda name: f"/* {name} */")
     engine.runs.clear()
-    job = prepare(engine, sketch, tmp_path / "a.html", Form(techniques={"height": ("./two",)}))
+    job = prepare(engine, sketch, tmp_path / "a.html", ExportOptions(techniques={"height": ("./two",)}))
     assert job.page is not None and len(job.page.data["sketches"]) == 2
     [source] = {n["path"] for item in job.page.data["sketches"] for n in item["nodes"] if n.get("data")}
     assert engine.runs[source] == 1

@@ -1,4 +1,4 @@
-"""The form of an export: what each kind of file holds, what is asked for, and what no sketch could give."""
+"""The formats of an export: what each kind of file holds, its options, and what no sketch could give."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ _LOOKED_AT = 4096  # bytes, within which an export says who made it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Form:
+class ExportOptions:
     """What to export and how; where a field has its default, the usual is done."""
 
     texture: str = ""  # "pass[.inner…][:output]"; "": the heights that the picture shows
@@ -121,10 +121,10 @@ _OPTIONS: tuple[tuple[str, str, Collection[str], str], ...] = (
     ("techniques", "menus of techniques are", *_OF_PAGES),
     ("language", "a language is", *_OF_PAGES),
 )
-"""Field of ``Form`` → what it is in a message, and the endings that take it."""
+"""Field of ``ExportOptions`` → what it is in a message, and the endings that take it."""
 
 
-def check(path: Path, form: Form) -> None:
+def check(path: Path, options: ExportOptions) -> None:
     """Raise ``PlaygroundError`` for what is wrong with any sketch."""
     ending = path.suffix.lower()
     if path.is_dir():
@@ -133,23 +133,25 @@ def check(path: Path, form: Form) -> None:
         raise DataError(_no_ending(ending), file=path)
     if not path.parent.is_dir():
         raise DataError(f"there is no folder '{shown(path.parent)}' to write into", file=path)
-    if form.kind and form.kind not in KINDS:
-        raise ParameterError(f"a texture is not '{form.kind}'; expected {', '.join(KINDS)}")
-    if form.span is not None:
-        low, high = form.span
+    if options.kind and options.kind not in KINDS:
+        raise ParameterError(f"a texture is not '{options.kind}'; expected {', '.join(KINDS)}")
+    if options.span is not None:
+        low, high = options.span
         if not (math.isfinite(low) and math.isfinite(high) and low < high):
             raise ParameterError(f"a range from {low:g} to {high:g}; expected two numbers, the lower first")
-    if form.language and form.language not in LANGUAGES:
-        raise ParameterError(f"no page is in '{form.language}'; expected {' or '.join(LANGUAGES)}")
+    if options.language and options.language not in LANGUAGES:
+        raise ParameterError(f"no page is in '{options.language}'; expected {' or '.join(LANGUAGES)}")
     for name, what, endings, target in _OPTIONS:
-        if getattr(form, name) and ending not in endings:
+        if getattr(options, name) and ending not in endings:
             raise DataError(f"{what} for {target}", file=path)
-    if form.grid and not 2 <= form.grid <= MESHES[ending]:
-        raise ParameterError(f"a grid of {form.grid} vertices a side: {ending} takes 2 to {MESHES[ending]}")
-    if ending in SHADERS and form.kind and not form.texture:
+    if options.grid and not 2 <= options.grid <= MESHES[ending]:
+        raise ParameterError(
+            f"a grid of {options.grid} vertices a side: {ending} takes 2 to {MESHES[ending]}"
+        )
+    if ending in SHADERS and options.kind and not options.texture:
         raise DataError("the kind of data is an option of --texture; a picture is shown as it is", file=path)
     if ending in VALUES:
-        _check_bits(path, form)
+        _check_bits(path, options)
     refuse_foreign_files(path, sidecar_paths(path))
 
 
@@ -174,28 +176,28 @@ def _no_ending(ending: str) -> str:
     return f"nothing is exported as '{ending}'{listed}"
 
 
-def _check_bits(path: Path, form: Form) -> None:
+def _check_bits(path: Path, options: ExportOptions) -> None:
     ending = path.suffix.lower()
-    kind = form.kind or ("" if form.texture else HEIGHT)
+    kind = options.kind or ("" if options.texture else HEIGHT)
     if kind:
-        bits_for(path, kind, form)
-    elif form.bits and not any(form.bits in bits for bits in VALUES[ending].values()):
-        raise _wrong_bits(path, form.bits, {b for bits in VALUES[ending].values() for b in bits})
+        bits_for(path, kind, options)
+    elif options.bits and not any(options.bits in bits for bits in VALUES[ending].values()):
+        raise _wrong_bits(path, options.bits, {b for bits in VALUES[ending].values() for b in bits})
 
 
-def bits_for(path: Path, kind: str, form: Form) -> int:
+def bits_for(path: Path, kind: str, options: ExportOptions) -> int:
     """Return the bits of a number in the file, or raise ``DataError`` for what the format has not."""
     ending = path.suffix.lower()
     bits = VALUES[ending].get(kind)
     if bits is None:
         able = [name for name in VALUES if kind in VALUES[name]]
         what = {HEIGHT: "heights", COLOUR: "colours", NUMBERS: "numbers"}[kind]
-        hint = "; name a texture of colours, as 'colour'" if kind == HEIGHT and not form.texture else ""
+        hint = "; name a texture of colours, as 'colour'" if kind == HEIGHT and not options.texture else ""
         raise DataError(f"{ending} does not hold {what}; {', '.join(able)} do{hint}", file=path)
-    if form.bits and form.bits not in bits:
-        raise _wrong_bits(path, form.bits, set(bits))
-    chosen = form.bits or bits[0]
-    if form.span and not whole_numbers(ending, chosen):
+    if options.bits and options.bits not in bits:
+        raise _wrong_bits(path, options.bits, set(bits))
+    chosen = options.bits or bits[0]
+    if options.span and not whole_numbers(ending, chosen):
         raise DataError("a range is for whole numbers; floats hold any value", file=path)
     return chosen
 
