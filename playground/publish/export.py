@@ -45,7 +45,7 @@ from playground.publish.export_formats import (
 )
 from playground.publish.mesh import encode_glb, encode_mtl, encode_obj, sampled, terrain_mesh
 from playground.publish.shader_export.export import ShaderFiles, check_es, shader_files
-from playground.publish.values import (
+from playground.publish.texture_encoding import (
     SOFTWARE,
     Encoded,
     Layer,

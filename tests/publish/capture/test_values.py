@@ -19,7 +19,7 @@ from playground.data.elevation import read_elevation
 from playground.data.image_files import read_samples
 from playground.engine.engine import Engine
 from playground.publish.export import Exported
-from playground.publish.values import encode_exr, encode_picture
+from playground.publish.texture_encoding import encode_exr, encode_picture
 
 LOW, HIGH = 50.0 + 1000.0 * 0.125, 50.0 + 1000.0 * 0.875  # the south-western corner; the north-western
 STEP = (HIGH - LOW) / 65535.0  # [m] of 16 bits
