@@ -17,7 +17,7 @@ from pathlib import Path
 
 from playground.errors import DataError, ParameterError, PlaygroundError, counted
 from playground.paths import shown
-from playground.publish.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob, JobProcess
+from playground.publish.capture_job import FILM, PICTURE, PICTURES, SHEET, CaptureJob, JobProcess
 from playground.publish.series import SWEEP_SIZE, Series
 from playground.publish.video import QUALITY, check_video
 from playground.sketch.model import MAX_PICTURE_SIDE, MAX_SIDE, Sketch

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.data.image_files import VIDEO_ENDINGS
 from playground.paths import shown
-from playground.publish.job import FILM, KINDS, PICTURE, PICTURES, SHEET, JobProcess
+from playground.publish.capture_job import FILM, KINDS, PICTURE, PICTURES, SHEET, JobProcess
 from playground.publish.sweep import parts_of, sweep_text
 from playground.publish.video import QUALITIES
 from playground.publish.window.captures import MULTIPLES, Captures, CaptureSettings, open_folder

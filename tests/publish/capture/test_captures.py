@@ -19,7 +19,7 @@ from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
 from playground.extras import install_command
 from playground.publish.addition import open_addition
-from playground.publish.job import FILM, PICTURE, PICTURES, SHEET, do
+from playground.publish.capture_job import FILM, PICTURE, PICTURES, SHEET, do
 from playground.publish.sweep import parts_of, sweep_text
 from playground.publish.window import captures as capturing
 from playground.publish.window.captures import Captures, CaptureSettings

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from pathlib import Path
 
-from playground.publish.job import PICTURE, CaptureJob, JobProcess
+from playground.publish.capture_job import PICTURE, CaptureJob, JobProcess
 
 
 def test_a_job_that_cannot_be_sent_ends_with_a_sentence(tmp_path: Path) -> None:
