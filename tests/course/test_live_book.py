@@ -25,9 +25,9 @@ from playground.course.library import labels
 from playground.course.read import read_lesson
 from playground.course.scenes import bug_region, pictures_in, spelled_value
 from playground.publish.web.blobs import packed_json
+from playground.publish.web.parameter_data import row as row_data
 from playground.publish.web.plan import sketch_data
 from playground.publish.web.shared import SharedData
-from playground.publish.web.shown import row as row_data
 from playground.sketch.assign import shown_parameters
 
 from ..loading import load

@@ -26,8 +26,8 @@ from playground.publish.notebook.saved import STATE, saved_figure, shipped_runti
 from playground.publish.web.blobs import packed_json
 from playground.publish.web.bundle import read_bundle
 from playground.publish.web.page_data import page_data
+from playground.publish.web.parameter_data import presets_data, shown_data, tracks_data
 from playground.publish.web.plan import FORMAT
-from playground.publish.web.shown import presets_data, shown_data, tracks_data
 from playground.shader.parameter import spell
 from playground.sketch.assign import TERRAIN_KEYS, check_value, values_of
 from playground.sketch.load import opened

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from playground.publish.web.shown import row
+from playground.publish.web.parameter_data import row
 from playground.sketch.assign import Shown
 
 from ...cases import each

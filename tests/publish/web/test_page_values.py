@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from playground.engine.camera import look
-from playground.publish.web.shown import row, shown_data
+from playground.publish.web.parameter_data import row, shown_data
 from playground.shader.colours import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
 from playground.shader.parameter import coerce, is_whole, length_of, tidied
 from playground.sketch.assign import check_value, resolve, shown_parameters, values_of
