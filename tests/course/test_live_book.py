@@ -27,7 +27,7 @@ from playground.course.scenes import bug_region, pictures_in, spelled_value
 from playground.publish.web.blobs import packed_json
 from playground.publish.web.parameter_data import row as row_data
 from playground.publish.web.plan import sketch_data
-from playground.publish.web.shared import SharedData
+from playground.publish.web.shared_data import SharedData
 from playground.sketch.assign import shown_parameters
 
 from ..loading import load

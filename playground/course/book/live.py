@@ -21,7 +21,7 @@ from playground.errors import PlaygroundError
 from playground.publish.web.blobs import packed_json
 from playground.publish.web.bundle import read_bundle
 from playground.publish.web.plan import sketch_data
-from playground.publish.web.shared import SharedData
+from playground.publish.web.shared_data import SharedData
 from playground.shader.source import read_text
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Sketch

@@ -7,7 +7,7 @@ from typing import Any
 
 from playground.engine.engine import Engine
 from playground.publish.web.plan import FORMAT, sketch_data
-from playground.publish.web.shared import SharedData
+from playground.publish.web.shared_data import SharedData
 from playground.publish.web.techniques import technique_menus
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 

@@ -25,7 +25,7 @@ from playground.publish.web.formulas import PassFormulas
 from playground.publish.web.kernels import Kernels
 from playground.publish.web.locks import Locks, made_by
 from playground.publish.web.parameter_data import presets_data, row, rules_data, shown_data, tracks_data
-from playground.publish.web.shared import SharedData
+from playground.publish.web.shared_data import SharedData
 from playground.publish.web.sources import source_data
 from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.source import read_text

@@ -20,7 +20,7 @@ from playground.errors import PlaygroundError
 from playground.publish.web import texts
 from playground.publish.web.blobs import Blobs
 from playground.publish.web.plan import KINDS, _Writing, sketch_data
-from playground.publish.web.shared import SharedData
+from playground.publish.web.shared_data import SharedData
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Camera, Kernel, Sketch
 
@@ -86,7 +86,7 @@ def shared() -> Iterator[SharedData]:
         patch.setattr(texts, "_is_as_written", lambda *_: True)
         patch.setattr(Blobs, "add", lambda *_: "texels")
         patch.setattr(_Writing, "_drawn", lambda *_: defaultdict(lambda: np.zeros((1, 1), np.float32)))
-        patch.setattr("playground.publish.web.shared._lossless", lambda _: b"")
+        patch.setattr("playground.publish.web.shared_data._lossless", lambda _: b"")
         yield SharedData()
 
 
