@@ -21,9 +21,9 @@ from playground.engine.plan import Plan, PlanRequest, Step, view_height
 from playground.engine.planner import extent_follows_size, make_plan
 from playground.engine.sources import source_kind
 from playground.paths import GLSL, shown
+from playground.publish.web.fixed_values import Locks, made_by
 from playground.publish.web.formulas import PassFormulas
 from playground.publish.web.kernels import Kernels
-from playground.publish.web.locks import Locks, made_by
 from playground.publish.web.parameter_data import presets_data, row, rules_data, shown_data, tracks_data
 from playground.publish.web.shared_data import SharedData
 from playground.publish.web.sources import source_data
