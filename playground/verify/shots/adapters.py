@@ -58,7 +58,7 @@ _NUMBERS = {"f1": np.uint8, "f2": np.float16, "f4": np.float32, "nu1": np.uint8,
 
 
 @dataclass(frozen=True, eq=False)
-class Taken:
+class PictureFromTest:
     """The numbers of a picture, and what is known of what drew it."""
 
     values: NDArray[Any]  # (height, width), or with 1 to 4 channels; top row first, of any dtype
@@ -67,40 +67,41 @@ class Taken:
     fonts: str = ""  # the files of the fonts in it, as "DejaVuSans.ttf"
 
 
-def taken(thing: object) -> Taken:
+def picture_from(thing: object) -> PictureFromTest:
     """Return the picture that a thing holds; raise ``DataError`` for what holds none."""
     for adapter in ADAPTERS:
-        taken_picture = adapter(thing)
-        if taken_picture is not None:
-            return taken_picture
+        test_picture = adapter(thing)
+        if test_picture is not None:
+            return test_picture
     raise AssertionError("the last adapter gives an array or raises")
 
 
-def _of_moderngl(thing: Any) -> Taken | None:
+def _of_moderngl(thing: Any) -> PictureFromTest | None:
     if not _is_a(thing, "moderngl"):
         return None
     if hasattr(thing, "color_attachments"):
         _make_current(thing.ctx)
-        return Taken(_framebuffer(thing), thing.ctx)
+        return PictureFromTest(_framebuffer(thing), thing.ctx)
     if not all(hasattr(thing, name) for name in ("read", "components", "dtype")):
         return None
     if getattr(thing, "samples", 0):
         raise DataError("a texture of several samples has no pixels to read: give its framebuffer")
     _make_current(thing.ctx)
-    return Taken(_pixels(thing.read(alignment=1), thing.size, thing.components, thing.dtype), thing.ctx)
+    pixels = _pixels(thing.read(alignment=1), thing.size, thing.components, thing.dtype)
+    return PictureFromTest(pixels, thing.ctx)
 
 
-def _of_moderngl_window(thing: Any) -> Taken | None:
+def _of_moderngl_window(thing: Any) -> PictureFromTest | None:
     if not _is_a(thing, "moderngl_window"):
         return None
     window = getattr(thing, "wnd", thing)
     if not hasattr(window, "fbo"):
         return None
     _make_current(window.ctx)
-    return Taken(_framebuffer(window.fbo), window.ctx)
+    return PictureFromTest(_framebuffer(window.fbo), window.ctx)
 
 
-def _of_matplotlib(thing: Any) -> Taken | None:
+def _of_matplotlib(thing: Any) -> PictureFromTest | None:
     figure = getattr(thing, "figure", thing)
     savefig = getattr(thing, "savefig", None) or getattr(figure, "savefig", None)
     if not callable(savefig):
@@ -111,7 +112,7 @@ def _of_matplotlib(thing: Any) -> Taken | None:
     savefig(file, format="png", dpi="figure")  # by Agg, whatever shows the figure
     with PIL.Image.open(file) as image:
         pixels = np.array(image.convert("RGBA"))
-    return Taken(pixels, tool=_matplotlib(), fonts=_fonts(figure))
+    return PictureFromTest(pixels, tool=_matplotlib(), fonts=_fonts(figure))
 
 
 def _matplotlib() -> ContextInfo | None:
@@ -133,30 +134,31 @@ def _fonts(figure: Any) -> str:
     return ", ".join(sorted({Path(find(text.get_fontproperties())).name for text in texts}))
 
 
-def _of_pillow(thing: Any) -> Taken | None:
+def _of_pillow(thing: Any) -> PictureFromTest | None:
     if not _is_a(thing, "PIL"):
         return None
     if thing.mode in ("F", "I") or thing.mode.startswith("I;16"):
-        return Taken(np.array(thing))
-    return Taken(np.array(thing.convert("RGBA")))
+        return PictureFromTest(np.array(thing))
+    return PictureFromTest(np.array(thing.convert("RGBA")))
 
 
-def _of_vispy(thing: Any) -> Taken | None:
-    return Taken(np.asarray(thing.render())) if _is_a(thing, "vispy") and hasattr(thing, "render") else None
+def _of_vispy(thing: Any) -> PictureFromTest | None:
+    draws = _is_a(thing, "vispy") and hasattr(thing, "render")
+    return PictureFromTest(np.asarray(thing.render())) if draws else None
 
 
-def _of_snapshots(thing: Any) -> Taken | None:
+def _of_snapshots(thing: Any) -> PictureFromTest | None:
     if callable(getattr(thing, "snapshot", None)):
-        return Taken(np.asarray(thing.snapshot()))
+        return PictureFromTest(np.asarray(thing.snapshot()))
     offscreen = _is_a(thing, "rendercanvas", "wgpu") and callable(getattr(thing, "draw", None))
-    return Taken(np.asarray(thing.draw())) if offscreen else None
+    return PictureFromTest(np.asarray(thing.draw())) if offscreen else None
 
 
-def _of_rgba(thing: Any) -> Taken | None:
-    return Taken(np.asarray(thing.to_rgba())) if callable(getattr(thing, "to_rgba", None)) else None
+def _of_rgba(thing: Any) -> PictureFromTest | None:
+    return PictureFromTest(np.asarray(thing.to_rgba())) if callable(getattr(thing, "to_rgba", None)) else None
 
 
-def _of_arrays(thing: Any) -> Taken | None:
+def _of_arrays(thing: Any) -> PictureFromTest | None:
     try:
         array = np.asarray(thing)
     except (TypeError, ValueError):  # lists of several lengths
@@ -166,10 +168,10 @@ def _of_arrays(thing: Any) -> Taken | None:
             f"there is no picture in a {type(thing).__name__}: expected a frame, an array, an image, "
             "a framebuffer, a window or a figure"
         )
-    return Taken(array)
+    return PictureFromTest(array)
 
 
-ADAPTERS: tuple[Callable[[Any], Taken | None], ...] = (
+ADAPTERS: tuple[Callable[[Any], PictureFromTest | None], ...] = (
     _of_moderngl,
     _of_moderngl_window,
     _of_pillow,
@@ -340,7 +342,7 @@ class MaskOfTest:
         elif isinstance(item, str):
             self.textures += (item,)
         elif hasattr(item, "__array__") or hasattr(item, "__array_interface__"):
-            self.arrays += (Light(taken(item).values),)
+            self.arrays += (Light(picture_from(item).values),)
         else:
             raise ValueError(
                 f"mask = {item!r}: expected a rectangle (x, y, width, height) in pixels, the path of a PNG, "

@@ -27,7 +27,7 @@ from playground.paths import shown
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Given, Graph, Shot, Sketch, tolerance_of
-from playground.verify.shots.adapters import MaskOfTest, Taken, levels_of, taken
+from playground.verify.shots.adapters import MaskOfTest, PictureFromTest, levels_of, picture_from
 from playground.verify.shots.checking import (
     add_check,
     add_failure,
@@ -217,10 +217,10 @@ class ShotFixture:
     ) -> tuple[RenderedShot, ContextInfo]:
         """Return a picture with all that is known of how it was drawn, and what drew it."""
         __tracebackhide__ = True
-        taken_picture = None if isinstance(picture, Frame) else taken(picture)
-        info = self._renderer_of(case, picture, taken_picture, by)
-        drawer = by or (taken_picture.context if taken_picture else None)
-        return _drawn_by(picture, _rendered(picture, taken_picture, tone), drawer), info
+        test_picture = None if isinstance(picture, Frame) else picture_from(picture)
+        info = self._renderer_of(case, picture, test_picture, by)
+        drawer = by or (test_picture.context if test_picture else None)
+        return _drawn_by(picture, _rendered(picture, test_picture, tone), drawer), info
 
     def _refuse_picture(self, case: ShotCase, error: DataError, start: float) -> bool:
         """Record for the test's end that what was given is no picture; return False."""
@@ -307,10 +307,10 @@ class ShotFixture:
             self._checker.recorder.forget_earlier(self._node, case)
 
     def _renderer_of(
-        self, case: ShotCase, picture: object, taken_picture: Taken | None, by: By | None
+        self, case: ShotCase, picture: object, test_picture: PictureFromTest | None, by: By | None
     ) -> ContextInfo:
         __tracebackhide__ = True
-        tool = taken_picture and taken_picture.tool
+        tool = test_picture and test_picture.tool
         if isinstance(by, str):  # a folder that is named is used with any OpenGL
             named = ContextInfo(0, by, "", tool.version if tool else "", 0)
             if not by or named.slug != by:
@@ -318,8 +318,8 @@ class ShotFixture:
             return named
         if by is None and tool:
             return tool
-        if by is None and taken_picture and taken_picture.context:
-            by = taken_picture.context
+        if by is None and test_picture and test_picture.context:
+            by = test_picture.context
         if by is None:
             if id(picture) not in self._drawn:
                 raise TypeError(
@@ -371,14 +371,14 @@ def _error_left(by: By) -> str:
     return "" if error == "GL_NO_ERROR" else error
 
 
-def _rendered(picture: object, parser_: Taken | None, tone: str) -> RenderedShot:
+def _rendered(picture: object, test_picture: PictureFromTest | None, tone: str) -> RenderedShot:
     """Return a picture as the renderer process gives it, with what is wrong with its numbers."""
-    if parser_ is None:
+    if test_picture is None:
         assert isinstance(picture, Frame)
         if tone:
             raise DataError(f"tone = {tone!r} is for floats; a frame is of uint8")
         if isinstance(picture, RenderedShot):
             return picture
         return RenderedShot(picture.array, picture.sketch, picture.time)
-    pixels, wrong = levels_of(parser_.values, tone)
-    return RenderedShot(pixels, not_finite=wrong, fonts=parser_.fonts, tone=tone)
+    pixels, wrong = levels_of(test_picture.values, tone)
+    return RenderedShot(pixels, not_finite=wrong, fonts=test_picture.fonts, tone=tone)

@@ -12,7 +12,7 @@ import pytest
 
 from playground.api import headless
 from playground.data.image_files import read_png
-from playground.verify.shots.adapters import levels_of, taken
+from playground.verify.shots.adapters import levels_of, picture_from
 from playground.verify.shots.names import MAX_NAME, name_of_test, one_spelling, why_no_name
 
 Run = Callable[..., pytest.RunResult]
@@ -73,15 +73,15 @@ def made_in(package: str, **members: object) -> object:
     ],
 )
 def test_what_holds_a_picture_gives_it(thing: object) -> None:
-    assert taken(thing).values.tolist() == PIXELS.tolist()
+    assert picture_from(thing).values.tolist() == PIXELS.tolist()
 
 
 def test_images_of_pillow_of_any_mode() -> None:
     grey = PIL.Image.fromarray(PIXELS[..., 0])
-    assert levels_of(taken(grey).values)[0][..., 2].tolist() == PIXELS[..., 0].tolist()
+    assert levels_of(picture_from(grey).values)[0][..., 2].tolist() == PIXELS[..., 0].tolist()
     wide = PIL.Image.fromarray(PIXELS[..., 0].astype(np.uint16) * 257)
-    assert taken(wide).values.dtype == np.uint16
-    assert levels_of(taken(wide).values)[0][..., 0].tolist() == PIXELS[..., 0].tolist()
+    assert picture_from(wide).values.dtype == np.uint16
+    assert levels_of(picture_from(wide).values)[0][..., 0].tolist() == PIXELS[..., 0].tolist()
 
 
 @pytest.fixture
@@ -110,16 +110,17 @@ def test_what_moderngl_drew_has_its_top_row_first(kind: str, samples: int) -> No
         framebuffer.clear(0.0, 0.0, 1.0, 1.0, viewport=(0, 2, 6, 2))
         beside.ctx.__enter__()  # is current now, and has a framebuffer of that number
         beside.ctx.simple_framebuffer(size).clear(0.3, 0.3, 0.3)
-        result = taken(framebuffer)
+        result = picture_from(framebuffer)
         assert result.context is context
         pixels = levels_of(result.values)[0]
         assert pixels[:2].tolist() == [[[0, 0, 255, 255]] * 6] * 2
         assert np.abs(pixels[2:].astype(int) - [255, 127.5, 0, 255]).max() <= 0.5
         window = made_in("moderngl_window", fbo=framebuffer, ctx=context)
         app = made_in("moderngl_window", wnd=window)
-        assert taken(window).values.tolist() == taken(app).values.tolist() == result.values.tolist()
+        for source in (window, app):
+            assert picture_from(source).values.tolist() == result.values.tolist()
         if not samples:
-            assert taken(attachment).values.tolist() == result.values.tolist()
+            assert picture_from(attachment).values.tolist() == result.values.tolist()
 
 
 # ── names ────────────────────────────────────────────────────────────────────
