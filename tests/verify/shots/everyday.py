@@ -34,7 +34,7 @@ from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Shot, Sketch, kernels_of
 from playground.sketch.replace_technique import with_texts
 from playground.verify.shots.compare import compare
-from playground.verify.shots.mutants.rendering import DoesNotApply, Rendering, broken, rendering_mutants
+from playground.verify.shots.mutants.rendering import DoesNotApply, SketchMutant, broken, rendering_mutants
 from playground.verify.shots.mutants.suite import ROUNDING
 from playground.verify.shots.suite import RenderedShot, ShotCase, render_shot, shots_of
 
@@ -72,7 +72,7 @@ class Change:
         return text[: self.start] + self.put + text[self.end :]
 
 
-Defect = Change | Rendering
+Defect = Change | SketchMutant
 
 
 @cache
@@ -93,7 +93,7 @@ def changes_of(file: str) -> tuple[Change, ...]:
 
 def applied(defect: Defect, sketch: Sketch) -> Sketch:
     """Return the sketch with a defect; raise ``DoesNotApply`` where it has not what is broken."""
-    if isinstance(defect, Rendering):
+    if isinstance(defect, SketchMutant):
         return broken(defect, sketch)
     if defect.file not in files_of(sketch):
         raise DoesNotApply(f"the sketch does not use {defect.file}")
@@ -137,7 +137,7 @@ class Judge:
     def kills(self, case: ShotCase, defect: Defect) -> bool:
         """Say whether a shot shows a defect; raise ``DoesNotApply`` where it has nothing of it."""
         shown = shown_by(case)
-        later = defect.later if isinstance(defect, Rendering) else 0.0
+        later = defect.later if isinstance(defect, SketchMutant) else 0.0
         try:
             there = replace(case, shot=replace(case.shot, time=case.shot.time + later))
             draw = self.draw(there, applied(defect, shown))

@@ -25,9 +25,9 @@ from playground.verify.shots.mutants.finished import FINISHED
 from playground.verify.shots.mutants.rendering import (
     DoesNotApply,
     Edit,
-    Finished,
+    ImageMutant,
     Picture,
-    Rendering,
+    SketchMutant,
     broken,
     rendering_mutants,
 )
@@ -71,7 +71,7 @@ MINE = (
 )
 
 
-def mutant(name: str) -> Rendering:
+def mutant(name: str) -> SketchMutant:
     (rendering,) = (m for m in rendering_mutants() if m.name == name)
     return rendering
 
@@ -229,7 +229,7 @@ def test_wires_are_exchanged(jacksboro: Sketch):
 )
 def test_missing_or_repeated_anchor_is_mutant_error(edit: Edit, message: str, jacksboro: Sketch):
     with pytest.raises(DataError, match=message) as caught:
-        broken(Rendering(name="old", broke="It is old.", edits=(edit,)), jacksboro)
+        broken(SketchMutant(name="old", broke="It is old.", edits=(edit,)), jacksboro)
     assert "present.glsl" in str(caught.value) and "'old'" in str(caught.value)
 
 
@@ -248,10 +248,12 @@ def test_a_sketch_of_ones_own_is_broken_as_far_as_it_can_be(mine: Path, any_engi
 
 def test_a_shot_that_does_not_show_a_defect_says_so(bench: MutantRunner):
     def shown(by: int) -> MutantResult:
-        change = Finished("more", "More.", lambda picture: np.clip(picture, 0, 255 - by) + np.uint8(by))
+        change = ImageMutant("more", "More.", lambda picture: np.clip(picture, 0, 255 - by) + np.uint8(by))
         return next(bench.run([change]))
 
-    (wire,) = bench.run([Rendering(name="none", broke="Nothing.", values=(("view.wire", (0.1, 0.2, 0.3)),))])
+    (wire,) = bench.run(
+        [SketchMutant(name="none", broke="Nothing.", values=(("view.wire", (0.1, 0.2, 0.3)),))]
+    )
     for result in (wire, shown(1)):
         assert result.unseen and result.well and not result.counts
     assert shown(2).counts and not shown(2).unseen
@@ -420,6 +422,8 @@ def test_the_command_fails_where_a_defect_passes(
 def test_every_mutant_can_be_chosen_by_name():
     assert named(()) == all_mutants()
     (item,) = named(["seam"])
-    assert isinstance(item, Rendering) and isinstance(named(["grey"])[0], Finished)
+    assert isinstance(item, SketchMutant) and isinstance(named(["grey"])[0], ImageMutant)
     with pytest.raises(DoesNotApply):
-        broken(Rendering(name="x", broke="X.", wires=(("colour.mix.grass", "nowhere"),)), load(PLAIN_SKETCH))
+        broken(
+            SketchMutant(name="x", broke="X.", wires=(("colour.mix.grass", "nowhere"),)), load(PLAIN_SKETCH)
+        )

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from playground.verify.shots.mutants.rendering import Finished, Picture
+from playground.verify.shots.mutants.rendering import ImageMutant, Picture
 
 _SEED = 20101
 _COLOURS = np.s_[..., :3]  # without alpha
@@ -88,56 +88,58 @@ def _noise_of_one(picture: Picture) -> Picture:
     return _off(picture, np.random.default_rng(_SEED).integers(-1, 2, (*picture.shape[:2], 3), np.int16), ...)
 
 
-FINISHED: tuple[Finished, ...] = (
-    Finished("upside-down", "Rows are read from the bottom up.", lambda p: p[::-1].copy()),
-    Finished("mirrored", "East and west are exchanged.", lambda p: p[:, ::-1].copy()),
-    Finished(
+FINISHED: tuple[ImageMutant, ...] = (
+    ImageMutant("upside-down", "Rows are read from the bottom up.", lambda p: p[::-1].copy()),
+    ImageMutant("mirrored", "East and west are exchanged.", lambda p: p[:, ::-1].copy()),
+    ImageMutant(
         "blue-for-red", "Bytes are taken in the order blue, green, red.", lambda p: p[..., [2, 1, 0, 3]]
     ),
-    Finished("one-pixel-along", "The picture is one pixel further to the right.", _one_pixel_along),
-    Finished(
+    ImageMutant("one-pixel-along", "The picture is one pixel further to the right.", _one_pixel_along),
+    ImageMutant(
         "half-a-pixel-along",
         "The picture is half a pixel further to the right, so that each pixel is the mean of two.",
         _half_a_pixel_along,
     ),
-    Finished(
+    ImageMutant(
         "magenta-square",
         "A square of 32 × 32 pixels has the colour of a texture that is missing.",
         lambda p: _set(p, _around_the_middle(p, 16), (255, 0, 255, 255)),
     ),
-    Finished(
+    ImageMutant(
         "dead-row", "One row of the picture is black.", lambda p: _set(p, np.s_[p.shape[0] // 3, :, :3], 0)
     ),
-    Finished("lost-row", "One row is lost, and those below it move up.", _lost_row),
-    Finished("dead-pixel", "One pixel has the wrong colour.", _dead_pixel),
-    Finished("dark-rim", "A rim one pixel wide is half as bright: a filter reads outside.", _dark_rim),
-    Finished(
+    ImageMutant("lost-row", "One row is lost, and those below it move up.", _lost_row),
+    ImageMutant("dead-pixel", "One pixel has the wrong colour.", _dead_pixel),
+    ImageMutant("dark-rim", "A rim one pixel wide is half as bright: a filter reads outside.", _dark_rim),
+    ImageMutant(
         "five-bits",
         "Each colour has five bits, so that the sky has bands.",
         lambda p: _set(p, _COLOURS, (p[..., :3] & 0xF8) | (p[..., :3] >> 5)),
     ),
-    Finished("jpeg-blocks", "The picture went through a JPEG of quality 75.", _jpeg_blocks),
-    Finished("grey", "All three colours are the picture's luminance.", _grey),
-    Finished("two-levels-brighter", "Every colour is two levels of 255 brighter.", lambda p: _off(p, 2, ...)),
-    Finished("blank", "Nothing is drawn.", lambda p: _set(p, ..., _BLACK)),
-    Finished(
+    ImageMutant("jpeg-blocks", "The picture went through a JPEG of quality 75.", _jpeg_blocks),
+    ImageMutant("grey", "All three colours are the picture's luminance.", _grey),
+    ImageMutant(
+        "two-levels-brighter", "Every colour is two levels of 255 brighter.", lambda p: _off(p, 2, ...)
+    ),
+    ImageMutant("blank", "Nothing is drawn.", lambda p: _set(p, ..., _BLACK)),
+    ImageMutant(
         "half-blank",
         "The upper half is not drawn.",
         lambda p: _set(p, np.s_[: p.shape[0] // 2], _BLACK),
     ),
-    Finished("a-row-short", "The picture is one row too small.", lambda p: p[:-1].copy()),
-    Finished(
+    ImageMutant("a-row-short", "The picture is one row too small.", lambda p: p[:-1].copy()),
+    ImageMutant(
         "faint-patch",
         "A patch of 24 × 24 pixels is three levels brighter.",
         lambda p: _off(p, 3, *_around_the_middle(p, 12)),
     ),
-    Finished(
+    ImageMutant(
         "specks",
         "Three pixels in a thousand are three levels brighter.",
         lambda p: _off(p, 3, np.random.default_rng(_SEED).random(p.shape[:2]) < 0.003),
     ),
-    Finished("noise-of-two", "One pixel in a hundred is off by two levels.", _noise_of_two),
-    Finished(
+    ImageMutant("noise-of-two", "One pixel in a hundred is off by two levels.", _noise_of_two),
+    ImageMutant(
         "noise-of-one",
         "Nothing: levels are off by one at most, as where a sum is rounded the other way.",
         _noise_of_one,

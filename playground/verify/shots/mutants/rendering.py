@@ -56,7 +56,7 @@ class Edit:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rendering:
+class SketchMutant:
     """A mutant that the engine draws: something is broken in the sketch."""
 
     name: str
@@ -76,7 +76,7 @@ class Rendering:
 
 
 @dataclass(frozen=True)
-class Finished:
+class ImageMutant:
     """A mutant that is made of the finished picture: something is broken on its way out."""
 
     name: str
@@ -89,7 +89,7 @@ class Finished:
     shot = ""
 
 
-Mutant = Rendering | Finished
+Mutant = SketchMutant | ImageMutant
 
 
 # ── the table ────────────────────────────────────────────────────────────────
@@ -101,7 +101,7 @@ _KEYS = {"name", "broke", "edit", "set", "plus", "times", "wire", "samples", "la
 
 
 @INTERFACE.cached()
-def rendering_mutants(table: Path = TABLE) -> tuple[Rendering, ...]:
+def rendering_mutants(table: Path = TABLE) -> tuple[SketchMutant, ...]:
     """Return the mutants of a table; raise ``DataError`` for a key or a name that is wrong in it."""
     with table.open("rb") as file:
         renderings = tuple(_mutant(entry, table) for entry in tomllib.load(file)["mutant"])
@@ -112,13 +112,13 @@ def rendering_mutants(table: Path = TABLE) -> tuple[Rendering, ...]:
     return renderings
 
 
-def _mutant(entry: dict[str, Any], table: Path) -> Rendering:
+def _mutant(entry: dict[str, Any], table: Path) -> SketchMutant:
     name = entry.get("name", "")
     if not name or not entry.get("broke", "").endswith("."):
         raise DataError(f"mutant '{name}': it needs a name, and a sentence as `broke`", file=table)
     if unknown := entry.keys() - _KEYS:
         raise DataError(f"mutant '{name}': no key '{min(unknown)}'; there are {sorted(_KEYS)}", file=table)
-    mutant = Rendering(
+    mutant = SketchMutant(
         name=name,
         broke=entry["broke"],
         edits=tuple(Edit(edit["file"], edit["find"], edit["put"]) for edit in entry.get("edit", ())),
@@ -131,7 +131,7 @@ def _mutant(entry: dict[str, Any], table: Path) -> Rendering:
         steps=entry.get("steps", 0),
         shot=entry.get("shot", ""),
     )
-    if mutant == Rendering(name=name, broke=mutant.broke, shot=mutant.shot):
+    if mutant == SketchMutant(name=name, broke=mutant.broke, shot=mutant.shot):
         raise DataError(f"mutant '{name}' breaks nothing", file=table)
     return mutant
 
@@ -142,7 +142,7 @@ def _mutant(entry: dict[str, Any], table: Path) -> Rendering:
 _CAMERA = "camera."
 
 
-def broken(mutant: Rendering, sketch: Sketch) -> Sketch:
+def broken(mutant: SketchMutant, sketch: Sketch) -> Sketch:
     """Return the sketch, as a shot shows it, with the mutant's defect.
 
     Raises ``DoesNotApply`` where the sketch lacks what it breaks, and ``DataError`` where

@@ -32,7 +32,7 @@ from playground.verify.shots.mutants.rendering import (
     DoesNotApply,
     Mutant,
     Picture,
-    Rendering,
+    SketchMutant,
     broken,
     rendering_mutants,
 )
@@ -206,7 +206,7 @@ class MutantRunner:
 
     def _result(self, mutant: Mutant, shot: Shot) -> MutantResult:
         expected = self.unbroken(shot)
-        if isinstance(mutant, Rendering):
+        if isinstance(mutant, SketchMutant):
             try:
                 sketch = broken(mutant, self.sketch.for_shot(shot))
             except DoesNotApply as reason:
