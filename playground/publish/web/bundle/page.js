@@ -1,4 +1,4 @@
-/* sources ad0410994a8ae7f7 */
+/* sources d5cecaf361e35a27 */
 /* Contains CodeMirror.
 MIT License
 

@@ -191,7 +191,7 @@ function length(...parts) {
   return Math.sqrt(parts.reduce((sum, part) => sum + part * part, 0));
 }
 
-// ── What gestures make of a camera and a sun, as workbench/camera_drag.py and others.
+// ── What gestures make of a camera and a sun, as playground/studio/picture/gestures.py.
 
 /** [degrees] that a drag over the picture's whole height turns the terrain. */
 const HALF_TURN = 180;

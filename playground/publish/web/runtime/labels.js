@@ -1,4 +1,4 @@
-// labels.js -- how parameters are named, sorted and found in a panel, as workbench/parameter_list.py does.
+// labels.js -- how parameters are named, sorted and found in a panel, as studio/panel/parameter_list.py does.
 
 /** @import { Shown } from "./schema.js" */
 

@@ -327,7 +327,7 @@ export const shellWord = (word) =>
 //
 // JSON has a menu's choice by its name, and a colour as "#rrggbb" where that is exact.
 
-/** A parameter as GET parameters tells it: workbench/control/described.py.
+/** A parameter as GET parameters tells it: playground/sketch/assign.py.
  *  @typedef {Omit<import("./schema.js").Shown, "locked"> & {locked: boolean, file: any}} Told */
 
 /** @param {Pick<Told, "widget" | "choices" | "raw">} one @param {any} told @returns {Value} */

@@ -14,7 +14,7 @@ import { setUniform } from "./programs.js";
 
 // ── Copies textures of two dimensions into cubes, volumes, arrays and lines: engine/textures.py.
 //
-// WebGL has no textures of one dimension: a line is one row, which the text reads at its middle (lines.js).
+// WebGL has no textures of one dimension: a line is one row, which the text reads at its middle.
 
 const FACES = 6;
 

@@ -9,7 +9,7 @@ import { fill } from "./words.js";
 
 const DEFAULT_DURATION = 10; // [s] that the bar of a sketch without keyframes shows at least
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 10];
-const FPS = 30; // frames of a film, as capture/film.py
+const FPS = 30; // frames of a film, as FPS of playground/publish/series.py
 const EPSILON = 1e-6;
 
 /** Times of a sketch's keyframes, each once, in order. @param {Sketch} sketch */

@@ -1,4 +1,4 @@
-// work_check.js -- judges a reader's work as tasks/judge.py does, and says how near a picture is as score.py.
+// work_check.js -- judges a reader's work and scores a picture, as playground/course/tasks.py does.
 
 import { general } from "./numbers.js";
 import { createSession } from "./session.js";
@@ -123,7 +123,7 @@ export async function createCheck(engine, sketch, state) {
   };
 }
 
-// ── Judges a reader's work as tasks/judge.py does, and says how near a picture is as score.py
+// ── Judges a reader's work and scores a picture, as playground/course/tasks.py does.
 
 /** What a work is judged by.
  *  @typedef {object} PageCheck
@@ -133,7 +133,7 @@ export async function createCheck(engine, sketch, state) {
  *  @property {Object<string, Value>} at            by leaf, over the exercise's own
  *  @property {{path: string, output: string, name: string}} [of]  a texture; else the picture */
 /** @typedef {{size: [number, number], data: Uint8ClampedArray}} Shot  row 0 south */
-/** What came of a check: see Result in verdict.py.
+/** What came of a check: see CheckResult in playground/course/tasks.py.
  *  @typedef {{passed: boolean, difference: number, bias?: number, place?: string, mistake?: string,
  *             notFinite?: number, sizes?: [number[], number[]], mine?: Shot, wanted?: Shot,
  *             differs?: Shot}} Outcome  sizes: width, height, channels */
