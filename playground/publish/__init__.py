@@ -1,4 +1,6 @@
 """Publishing: a picture or its data leaves as files, films, web pages, notebooks and shaders of other tools.
 
-Needs the core. To delete it: this folder, tests/publish and its line in rooms.py.
+Needs the core alone: its ``addition`` and ``window`` are imported by a window only. To delete it: this
+folder, tests/publish, its line in rooms.py and its exporter in pyproject.toml; ``course``, which needs it,
+goes with it.
 """
