@@ -5,7 +5,7 @@ corner is the origin.
 
 Sums, products, quotients and roots alone, in a fixed order, so that every machine and every browser gets the
 same directions and matrices to the last bit: no two libraries of mathematics agree on that of a sine. The
-page runtime has the same in camera.js and camera.js, tested for equality.
+page runtime has the same in camera.js, tested for equality.
 """
 
 from __future__ import annotations

@@ -5,8 +5,7 @@ each level has a list of indices for each set of neighbours that are one level c
 whose edges it then shares vertex for vertex, so that no crack can open. A piece is drawn
 once for all tiles that are to look so, each tile an instance.
 
-Like the camera's, these numbers are the same on every machine and in a browser (detail.js, detail.js,
-geomipmap.js).
+Like the camera's, these numbers are the same on every machine and in a browser (detail.js).
 
 Every square is drawn by the same 512 triangles. Their vertices slide into those of the
 next level as the distance grows (view/vertices.glsl), so that no level begins or ends in

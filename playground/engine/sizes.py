@@ -282,7 +282,7 @@ class PassSizes:
             raise spec.error(f"pass '{spec.name}': {message}")
 
     def _size_around(self, base: str) -> Size:
-        """Return the size of a pass, or of a base: see ``named_numbers``."""
+        """Return the size of a pass, or of a base: ``TERRAIN`` or ``FRAME``."""
         return self._bases[base] if base in self._bases else self.size_of(base)
 
     # ── names ────────────────────────────────────────────────────────────────

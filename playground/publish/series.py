@@ -5,8 +5,7 @@ sketch's keyframes, its text or its repeats make of the time is theirs. The terr
 light are computed again only where they change from picture to picture, and nothing that later ones do
 not use stays in the cache.
 
-``write_series`` draws a series into a sink: a video (``video``), numbered files (``sequence``) or a sheet
-(``sheet``).
+``write_series`` draws a series into a sink: a ``VideoFile`` (of ``video``), ``NumberedFiles`` or a ``Sheet``.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Widgets of parameters: one table, ``widgets.json``, that Python and the page runtime read.
 
 A row says what a widget is for, what it takes in brackets, its range, unit and scale, and which control
-edits it. A widget that is like a slider is one row; another control is one function in
-``live/widgets.py`` and one in ``web/runtime/controls.js``, by its name there.
+edits it. A widget that is like a slider is one row; another control is one function in the studio's
+``widgets.py`` and one in the page runtime's ``controls.js``, by its name there.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Warn of what a sketch's texts say and its picture does not show.
 
 That is a sampler that nothing feeds, a division of whole numbers with a remainder, a ``#line``; and what the
-readers of the files noted. ``verify.warnings`` has those that only a check looks for.
+readers of the files noted. ``engine.sketch_warnings`` has those that only a check looks for.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ def test_every_file_that_is_one_by_its_name_is_one(those_that_ship):
     [pytest.param(n, marks=[] if n in EVERY_DAY else [pytest.mark.slow]) for n in VARIANTS_THAT_SHIP],
 )
 def test_it_agrees_within_its_bound(ctx, those_that_ship, name):
-    """At every size, seed, choice of a menu and end of a slider: see ``engine.verify``."""
+    """At every size, seed, choice of a menu and end of a slider: see ``verify.variants``."""
     subject = those_that_ship[name]
     with Engine(ctx) as engine:
         verdict = verify(engine, subject.variant, subject.technique, subject.places)

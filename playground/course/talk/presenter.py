@@ -1,7 +1,7 @@
 """A lesson in front of a class, without a window: which beat is on, what covers it, what was drawn on it.
 
 Keys, clickers and the page of notes all end here. Pictures are shown by who owns them: see
-``presented_pictures``.
+``stage.PresentedPictures``.
 """
 
 from __future__ import annotations

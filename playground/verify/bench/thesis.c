@@ -5,7 +5,7 @@
  * heights of layers are whole numbers 0..255, and numbers come from rand(), as there.
  * What is fixed: the nodes' lower bound (slip 4), and the normalisation, to 255.
  *
- * Compiled by generation.py:  cc -O2 -shared -fPIC thesis.c -lm
+ * Compiled by peers.py:  cc -O2 -shared -fPIC thesis.c thesis_light.c -lm
  */
 #include <math.h>
 #include <stdlib.h>
