@@ -26,7 +26,7 @@ from playground.publish.notebook.saved import STATE, saved_figure, shipped_runti
 from playground.publish.web.blobs import packed_json
 from playground.publish.web.bundle import read_bundle
 from playground.publish.web.page_data import page_data
-from playground.publish.web.parameter_data import presets_data, shown_data, tracks_data
+from playground.publish.web.parameter_data import parameters_data, presets_data, tracks_data
 from playground.publish.web.plan import FORMAT
 from playground.shader.parameter import spell
 from playground.sketch.assign import TERRAIN_KEYS, check_value, values_of
@@ -109,7 +109,7 @@ def kernel_outline(sketches: Sequence[Sketch], size: tuple[int, int], engine: En
 def _outline(sketch: Sketch, size: tuple[int, int], engine: Engine) -> dict[str, Any]:
     terrain = engine.plan(sketch, size).terrain
     values = values_of(sketch)
-    rows = shown_data(sketch, values, _unlocked)
+    rows = parameters_data(sketch, values, _unlocked)
     return {
         "format": FORMAT,
         "name": sketch.name,

@@ -18,7 +18,7 @@ Locked = Callable[[str, tuple[str, ...]], str]
 """Returns why a parameter of a path, with its targets, cannot be changed in a page; "": it can."""
 
 
-def shown_data(sketch: Sketch, values: Mapping[str, Any], locked: Locked) -> list[dict[str, Any]]:
+def parameters_data(sketch: Sketch, values: Mapping[str, Any], locked: Locked) -> list[dict[str, Any]]:
     """Return every parameter of a sketch as the panel has it: see ``Shown`` in schema.js."""
     rows = []
     for shown in shown_parameters(sketch):

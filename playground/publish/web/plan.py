@@ -24,7 +24,7 @@ from playground.paths import GLSL, shown
 from playground.publish.web.fixed_values import Locks, made_by
 from playground.publish.web.formulas import PassFormulas
 from playground.publish.web.kernels import Kernels
-from playground.publish.web.parameter_data import presets_data, row, rules_data, shown_data, tracks_data
+from playground.publish.web.parameter_data import parameters_data, presets_data, row, rules_data, tracks_data
 from playground.publish.web.shared_data import SharedData
 from playground.publish.web.sources import source_data
 from playground.shader.expressions import counts_frames, follows_time
@@ -88,7 +88,7 @@ class _Writing:
         nodes = [self._node(node) for node in self.flat.nodes]
         constants = values_of(sketch) | self._constants()
         values = {path: self.written(path, value) for path, value in constants.items()}
-        rows = shown_data(sketch, values, self.locks.of_parameter)
+        rows = parameters_data(sketch, values, self.locks.of_parameter)
         presets, preset_notes = presets_data(sketch, rows, self.written)
         tracks, track_notes = tracks_data(sketch, self.locks.of_parameter, self.written)
         return {

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from playground.engine.camera import look
-from playground.publish.web.parameter_data import row, shown_data
+from playground.publish.web.parameter_data import parameters_data, row
 from playground.shader.colours import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
 from playground.shader.parameter import coerce, is_whole, length_of, tidied
 from playground.sketch.assign import check_value, resolve, shown_parameters, values_of
@@ -285,7 +285,7 @@ def test_main_parameters_have_the_windows_labels(node: Node):
         if not sketch.main:
             continue
         expected = {item.path: item.title for item in main_items(sketch)}
-        rows = shown_data(sketch, values_of(sketch), lambda path, targets: "")
+        rows = parameters_data(sketch, values_of(sketch), lambda path, targets: "")
         assert node.run(script, rows) == [list(item) for item in expected.items()], sketch.name
         seen += len(expected)
     assert seen > 50
