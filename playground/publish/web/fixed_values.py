@@ -27,8 +27,8 @@ _METRES = {
 """What a terrain says in metres → the given names of a kernel that depend on it."""
 
 
-class Locks:
-    """The locks of one planned sketch."""
+class FixedValues:
+    """Those of one planned sketch, each with the reason."""
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
@@ -81,14 +81,14 @@ class Locks:
     def of_metres(self) -> dict[str, str]:
         """Return why the terrain's metres cannot be changed, of those by name that cannot."""
         leaves = {leaf.path: leaf for leaf in self.flat.leaves}
-        locks: dict[str, str] = {}
+        reasons: dict[str, str] = {}
         for path, source in {**{path: path for path in self.sources}, **self._read_by}.items():
             kernel = leaves[path].kernel
             for name, names in _METRES.items():
                 if any(map(kernel.reads, names)):
                     made = made_by(self.sources[source])
-                    locks[name] = _sentence(f"{made} was made by this when the page was exported")
-        return locks
+                    reasons[name] = _sentence(f"{made} was made by this when the page was exported")
+        return reasons
 
     def notes(self) -> list[str]:
         """Return a message on each source that a page has as it was at export: its size, its moment."""

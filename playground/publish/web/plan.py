@@ -21,7 +21,7 @@ from playground.engine.plan import Plan, PlanRequest, Step, view_height
 from playground.engine.planner import extent_follows_size, make_plan
 from playground.engine.sources import source_kind
 from playground.paths import GLSL, shown
-from playground.publish.web.fixed_values import Locks, made_by
+from playground.publish.web.fixed_values import FixedValues, made_by
 from playground.publish.web.formulas import PassFormulas
 from playground.publish.web.kernels import Kernels
 from playground.publish.web.parameter_data import parameters_data, presets_data, row, rules_data, tracks_data
@@ -78,7 +78,7 @@ class _Writing:
         self.steps = {step.path: step for step in plan.walk()}
         self.values = {path: step.values for path, step in self.steps.items()}
         self.formulas = PassFormulas(plan)
-        self.locks = Locks(plan)
+        self.fixed = FixedValues(plan)
         self.notes: list[str] = []
 
     def data(self) -> dict[str, Any]:
@@ -88,9 +88,9 @@ class _Writing:
         nodes = [self._node(node) for node in self.flat.nodes]
         constants = values_of(sketch) | self._constants()
         values = {path: self.written(path, value) for path, value in constants.items()}
-        rows = parameters_data(sketch, values, self.locks.of_parameter)
+        rows = parameters_data(sketch, values, self.fixed.of_parameter)
         presets, preset_notes = presets_data(sketch, rows, self.written)
-        tracks, track_notes = tracks_data(sketch, self.locks.of_parameter, self.written)
+        tracks, track_notes = tracks_data(sketch, self.fixed.of_parameter, self.written)
         return {
             "format": FORMAT,
             "name": sketch.name,
@@ -106,8 +106,8 @@ class _Writing:
                 "extent": list(terrain.extent or ()),
                 "relief": terrain.relief,
                 "base_elevation": terrain.base_elevation,
-                "locked": self.locks.of_terrain(),
-                "lockedMetres": self.locks.of_metres(),
+                "locked": self.fixed.of_terrain(),
+                "lockedMetres": self.fixed.of_metres(),
                 "extentFollows": extent_follows_size(sketch, self.flat, self.values),
             },
             "camera": asdict(sketch.camera),
@@ -128,7 +128,7 @@ class _Writing:
             "textures": self._textures(),
             "map": self._map(),
             "choices": [],
-            "notes": [*lacking, *self.notes, *self.locks.notes(), *preset_notes, *track_notes],
+            "notes": [*lacking, *self.notes, *self.fixed.notes(), *preset_notes, *track_notes],
         }
 
     def written(self, path: str, value: Value) -> Any:
@@ -212,7 +212,7 @@ class _Writing:
                 data["size"] = self.formulas.sides(path)
             if spec.repeat:
                 data["repeat"] = self.formulas.repeat(path)
-            if locked := self.locks.of_steps(path):
+            if locked := self.fixed.of_steps(path):
                 data["locked"] = locked
             passes[path] = data
         return passes
