@@ -497,7 +497,6 @@ def test_closing_frees_the_port_and_ends_the_thread(remote: Harness):
         again.bind(("127.0.0.1", server.guard.port))
 
 
-@pytest.mark.slow
 def test_importing_the_playground_imports_no_server():
     import subprocess
     import sys

@@ -12,7 +12,6 @@ from playground.extras import needs
 from playground.local_server import check_token, new_token
 from playground.studio.bench import Workbench
 from playground.studio.remote.controls import Calls, Changes, Controls
-from playground.studio.remote.osc import Addresses
 
 if TYPE_CHECKING:
     from playground.studio.remote.midi import Midi
@@ -85,6 +84,8 @@ class Remotes:
         if self.server is not None:
             self.server.start(self.calls, self._controls)
         if self.osc is not None:
+            from playground.studio.remote.osc import Addresses
+
             self.osc.start(Addresses(self._controls), wake)
 
     def take(self) -> None:
