@@ -134,12 +134,14 @@ _NUMBERS = ("most", "over 1", "FLIP", "FLIP tile")
 
 
 def _row(result: MutantResult) -> tuple[str, ...]:
+    from playground.verify.shots.verdicts import VERDICTS
+
     comparison = result.comparison
     assert comparison is not None
     numbers = (
-        ["", ""]
-        if comparison.verdict in ("blank", "size")
-        else [str(comparison.most), f"{result.fraction:.2%}"]
+        [str(comparison.most), f"{result.fraction:.2%}"]
+        if VERDICTS[comparison.verdict].measured
+        else ["", ""]
     )
     perceived = result.perceived
     numbers += ["", ""] if perceived is None else [f"{perceived.mean:.3f}", f"{perceived.tile:.3f}"]

@@ -156,7 +156,8 @@ def accept(
     """Make references of pictures that were drawn."""
     from playground.verify.shots.accept import accept as accept_one
     from playground.verify.shots.accept import choose
-    from playground.verify.shots.results import NEVER_ACCEPTED, read_results
+    from playground.verify.shots.results import read_results
+    from playground.verify.shots.verdicts import verdict_on
 
     folder, patterns = _folder_and_shots(shots or [])
     if everything == bool(patterns):
@@ -170,7 +171,7 @@ def accept(
         try:
             change = accept_one(folder, record, also=also)
         except PlaygroundError as error:
-            if everything and record.word in NEVER_ACCEPTED:
+            if everything and not verdict_on(record.word).acceptable:
                 note(f"left as it is: {error}")
                 continue
             refused += 1

@@ -24,7 +24,8 @@ from playground.errors import DataError, ParameterError, nearest
 from playground.files import make_folder, read_regular, write_file
 from playground.paths import shown
 from playground.verify.shots.references import FOLDER, accepted_in
-from playground.verify.shots.results import NEVER_ACCEPTED, Record, digest_of, digests_of
+from playground.verify.shots.results import Record, digest_of, digests_of
+from playground.verify.shots.verdicts import verdict_on
 
 _SLUG = re.compile(r"[a-z0-9-]+")
 
@@ -67,7 +68,7 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
     """
     if record.ok:
         raise DataError(f"{record.name}: it passed, so nothing to accept")
-    if record.word in NEVER_ACCEPTED:
+    if not verdict_on(record.word).acceptable:
         raise DataError(f"{record.name}: no reference can be made of it ({record.message})")
     if also and record.word == "unreadable":
         raise DataError(f"{record.name}: its reference is damaged, so it cannot stay next to this one")

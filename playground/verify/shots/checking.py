@@ -28,10 +28,7 @@ from playground.engine.plain_forms import PlainForms, silent
 from playground.errors import (
     ContextError,
     DataError,
-    OpenGLFault,
     PlaygroundError,
-    SandboxCrash,
-    SandboxTimeout,
 )
 from playground.paths import shown
 from playground.verify.shots.names import Claim, Claims, keeping, writing
@@ -55,8 +52,8 @@ from playground.verify.shots.references import (
     reference_path,
     write_reference,
 )
-from playground.verify.shots.results import NEVER_ACCEPTED
 from playground.verify.shots.suite import Outcome, RenderedShot, RendererProcess, ShotCase, check
+from playground.verify.shots.verdicts import VERDICTS, word_of
 
 # ── failures of a test, told at its end ──────────────────────────────────────
 
@@ -112,14 +109,6 @@ def _take_failures(node: pytest.Item) -> str:
 
 
 Result = TypeVar("Result")
-
-_ENDS = {SandboxCrash: "crash", SandboxTimeout: "hang", OpenGLFault: "gl-error"}
-"""The words for what gives no picture; anything else that a message explains is an "error"."""
-
-
-def word_of(error: PlaygroundError) -> str:
-    """Return the word for what gave no picture: "crash", "hang", "gl-error" or "error"."""
-    return next((word for kind, word in _ENDS.items() if isinstance(error, kind)), "error")
 
 
 @dataclass(frozen=True)
@@ -241,7 +230,7 @@ class Checker:
 
     def accepting(self, node: pytest.Item, outcome: Outcome) -> str:
         """Return the command that would accept the picture; "" where none would."""
-        if outcome.ok or self.plain or outcome.word in NEVER_ACCEPTED:
+        if outcome.ok or self.plain or not VERDICTS[outcome.word].acceptable:
             return ""
         options = ["--shots-update"]
         if self.expected != REFERENCE_RENDERER:
@@ -340,7 +329,7 @@ class Checker:
 
     def _may_write(self, outcome: Outcome) -> bool:
         """Whether a reference is to be made of a picture that does not pass."""
-        if not self.updating or outcome.word in NEVER_ACCEPTED:
+        if not self.updating or not VERDICTS[outcome.word].acceptable:
             return False
         return self._failed is None or self.recorder.name_of(outcome.case) in self._failed
 
@@ -384,7 +373,7 @@ class Checker:
 
     def _explained(self, node: pytest.Item, outcome: Outcome) -> str:
         lines = [f"{outcome.case}: {outcome.message}"]
-        if self.updating and outcome.word in NEVER_ACCEPTED:
+        if self.updating and not VERDICTS[outcome.word].acceptable:
             lines.append("    not written: a broken picture is never a reference")
         elif self.updating:
             lines.append("    not written: it had not failed before")

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from playground.data.image_files import read_png
 from playground.errors import DataError
 from playground.paths import shown
+from playground.verify.shots.verdicts import VERDICTS
 
 TOLERANCE = 1
 """[levels of 255] What may differ on the reference renderer: a rounding the other way."""
@@ -54,7 +55,7 @@ class Comparison:
     @property
     def ok(self) -> bool:
         """Whether the picture is the one expected."""
-        return self.verdict == "same"
+        return VERDICTS[self.verdict].passes
 
     @property
     def fraction(self) -> float:

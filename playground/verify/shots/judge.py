@@ -61,6 +61,7 @@ from playground.verify.shots.compare import (
 )
 from playground.verify.shots.flip import TILE, flip
 from playground.verify.shots.references import Fingerprint, Reference
+from playground.verify.shots.verdicts import VERDICTS
 
 # ── the tolerance that a shot declares ───────────────────────────────────────
 
@@ -138,19 +139,6 @@ def _biased(signed: NDArray[np.int16], over: NDArray[np.bool_]) -> tuple[int, in
 # ── one picture ──────────────────────────────────────────────────────────────
 
 
-WORDS = (
-    "same",  # it passes; all others fail
-    "differs",
-    "crowded",  # few pixels differ, but close together
-    "size",
-    "blank",  # of one colour
-    "nan",  # a number that is not finite in a texture that went into it
-    "gl-error",
-    "missing",  # there is no reference
-    "unreadable",  # there is a reference that cannot be read
-    "structure",  # another renderer's picture is further off than renderers are
-)
-
 SAME_BUILD, OTHER_BUILD, OTHER_RENDERER = "same build", "another build", "another renderer"
 
 OTHER_TOLERANCE = 3
@@ -221,7 +209,7 @@ class Rule:
 class Judgement:
     """Whether a picture passes, and why."""
 
-    word: str  # of `WORDS`
+    word: str  # of `VERDICTS`
     comparison: Comparison  # with the nearest reference
     message: str  # what there is to say, beginning with the word
     tier: str = ""  # how strictly it was compared; "": it was not
@@ -235,7 +223,7 @@ class Judgement:
     @property
     def ok(self) -> bool:
         """Whether the picture passes."""
-        return self.word == "same"
+        return VERDICTS[self.word].passes
 
 
 def judge(
@@ -274,13 +262,16 @@ def _with_rule(judgement: Judgement, rule: Rule) -> str:
     message = judgement.message
     if judgement.ok and rule.tolerance and judgement.tier in (SAME_BUILD, OTHER_BUILD):
         if judgement.tolerated:
-            message = re.sub("^(differs|crowded)", "same, by the tolerance", message)
+            message = re.sub(f"^({_TOLERABLE})", "same, by the tolerance", message)
         else:
             message += "; the tolerance is not needed"
     if rule.hidden:
         width, height = judgement.comparison.size
         message += f"; {rule.hidden} pixels ({100 * rule.hidden / (width * height):.3g} %) are masked"
     return message
+
+
+_TOLERABLE = "|".join(word for word, verdict in VERDICTS.items() if verdict.tolerable)
 
 
 def unreadable(actual: NDArray[np.uint8], fingerprint: Fingerprint, reason: str) -> Judgement:
@@ -340,7 +331,7 @@ def _with_tolerance(
     judgement: Judgement, actual: NDArray[np.uint8], reference: Reference, rule: Rule
 ) -> Judgement:
     """Return a judgement by the tolerance that a shot declares, where the usual one lets it fail."""
-    if rule.tolerance is None or judgement.word not in ("differs", "crowded"):
+    if rule.tolerance is None or not VERDICTS[judgement.word].tolerable:
         return judgement
     visible = hidden(actual, reference.pixels, rule.mask)
     bounds = (FLIP_MEAN, FLIP_TILE)
@@ -365,7 +356,7 @@ def _judged(
     """Judge by one reference of the same renderer; ``strict`` allows one level even of another build."""
     judgement = _by_pixels(actual, fingerprint, reference, SAME_BUILD if same else OTHER_BUILD, rule)
     comparison = judgement.comparison
-    if strict or comparison.verdict in _FINAL:
+    if strict or _is_final(comparison):
         return judgement
     most = f"differs: max difference {comparison.most} of 255"
     if comparison.most > OTHER_TOLERANCE:
@@ -399,7 +390,7 @@ def _judged_by_eye(
     """Judge by a reference of another renderer."""
     judgement = _by_pixels(actual, fingerprint, reference, OTHER_RENDERER, rule)
     comparison = judgement.comparison
-    if comparison.verdict in _FINAL:
+    if _is_final(comparison):
         return judgement
     difference = flip(hidden(actual, reference.pixels, rule.mask), reference.pixels)
     tile, corner = difference.worst_tile()
@@ -417,7 +408,9 @@ def _judged_by_eye(
     return replace(judgement, word="same", comparison=passed, message=message, perceived=perceived)
 
 
-_FINAL = ("blank", "size", "same")  # verdicts on the pixels that no tier changes
+def _is_final(comparison: Comparison) -> bool:
+    """Whether no tier changes the verdict on the pixels."""
+    return comparison.ok or not VERDICTS[comparison.verdict].measured
 
 
 def _by_pixels(
@@ -431,7 +424,7 @@ def _by_pixels(
         word=comparison.verdict,
         comparison=comparison,
         message=str(comparison),
-        tier="" if comparison.verdict in ("blank", "size") else tier,
+        tier=tier if VERDICTS[comparison.verdict].measured else "",
         fingerprint=fingerprint,
         differences=fingerprint.differences(reference.fingerprint),
     )
@@ -516,18 +509,18 @@ def judge_frames(
     # A blank frame comes first, even where the others only miss a reference: it may not be written.
     worst = next((i for i, word in enumerate(words) if word == "blank"), None)
     if worst is None:
-        worst = next((i for i, word in enumerate(words) if word != "same"), None)
+        worst = next((i for i, word in enumerate(words) if not VERDICTS[word].passes), None)
     if worst is None:
         worst = max(range(count), key=lambda i: judged[i][0].comparison.most)
     judgement, cell_reference = judged[worst]
     path = cell_reference.path if cell_reference else None
     reference = next((r for r in (*fitting, *alike) if r.path == path), None)
     message = judgement.message
-    if judgement.word not in ("missing", "nan", "gl-error"):  # which are of no frame, or say of which
+    if VERDICTS[judgement.word].of_frame:  # else it is of none, or the message says of which
         word, _, rest = message.partition(": ")
         whose = f"frame {worst + 1} of {count}{labels[worst] and f', {labels[worst]}'}"
         message = f"{word}: {f'all {count} frames; of ' if judgement.ok else ''}{whose}: {rest}"
-        failed = sum(word != "same" for word in words)
+        failed = sum(not VERDICTS[word].passes for word in words)
         message += f"; {failed} of the {count} frames fail" if failed > 1 else ""
     whole = _whole(strip, reference, count, rule)
     return (

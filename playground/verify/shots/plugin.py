@@ -410,13 +410,14 @@ class Results:
             return
         from playground.verify.shots.recording import finish
         from playground.verify.shots.report import summarise
+        from playground.verify.shots.verdicts import verdict_on
 
         folder = self.config.invocation_params.dir / self.config.getoption("--shots-output")
         if message := summarise(
             self.properties_of_shots, folder, self.config.getoption("--shots-pictures-url")
         ):
             self.lines.append(message)
-        failed = any(word != "same" for word in notified[CHECKED])
+        failed = not all(verdict_on(word).passes for word in notified[CHECKED])
         requested = failed or self.config.getoption("--shots-report")
         self.lines += finish(self.config, self.uses.complete(), requested)
 

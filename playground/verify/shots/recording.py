@@ -24,7 +24,6 @@ from playground.verify.shots.report import NAME, write_report
 from playground.verify.shots.results import (
     FOLDER,
     FRAMES,
-    PASSED,
     PICTURES,
     Actual,
     CheckRun,
@@ -42,6 +41,7 @@ from playground.verify.shots.results import (
     write_result,
 )
 from playground.verify.shots.suite import Outcome, RenderedShot, ShotCase, images_of
+from playground.verify.shots.verdicts import PASSED, VERDICTS
 
 _CATCHES = {
     SAME_BUILD: "The same build drew both: any change of more than one level is found",
@@ -261,7 +261,7 @@ def _home(case: ShotCase, root: Path) -> str:
 
 def _numbers(outcome: Outcome) -> dict[str, float]:
     comparison = outcome.comparison
-    if comparison.verdict in ("blank", "missing", "size"):
+    if not VERDICTS[comparison.verdict].measured:
         return {}
     fraction, labels = comparison.fraction, getattr(outcome.frame, "labels", ())
     if labels:  # of its frames, without the cells of the strip that are left over

@@ -32,6 +32,7 @@ from playground.paths import shown
 from playground.verify.shots.page.document import ShotPageContext, page
 from playground.verify.shots.plugin_constants import REPORT
 from playground.verify.shots.results import FOLDER, Record, read_results
+from playground.verify.shots.verdicts import verdict_on
 
 # ── the file ─────────────────────────────────────────────────────────────────
 
@@ -166,7 +167,7 @@ def text_of(
     room: int = MAX_BYTES,
 ) -> str:
     """Return the summary as Markdown, of at most ``room`` bytes."""
-    failed = [shot for shot in shots if shot["shot.result"] != "same"]
+    failed = [shot for shot in shots if not verdict_on(shot["shot.result"]).passes]
     others = sorted({shot["shot.stands-in"] for shot in shots if "shot.stands-in" in shot})
     lines = [f"## {_heading(len(failed), len(shots))}", ""]
     lines += [f"- {escape(how)}" for how in others] + [""] * bool(others)

@@ -51,6 +51,7 @@ from playground.errors import DataError
 from playground.files import make_folder, read_regular, write_file
 from playground.json_text import read_json
 from playground.verify.shots.plugin_constants import REPORT, SHOT
+from playground.verify.shots.verdicts import verdict_on
 
 # ── records ──────────────────────────────────────────────────────────────────
 
@@ -64,14 +65,8 @@ FOLDER = REPORT
 PICTURES = ("actual", "expected", "difference", "flip", "masked")
 """The pictures a record can have, in the order in which they are shown."""
 
-PASSED = "same"
-"""The word of a shot that is what it should be."""
-
 FRAMES = "frames, in rows from the top left"
 """The number that only the record of an animation has."""
-
-NEVER_ACCEPTED = frozenset({"blank", "nan", "gl-error", "crash", "hang", "error"})
-"""The words of results that no reference may be made of: the picture is broken, or there is none."""
 
 _SHOT = r"[^./\\\0]+"
 _SKETCH = r"(?!\.{1,2}$)[^/\\\0]+"
@@ -134,7 +129,7 @@ class Record:
 
     sketch: str  # its name: a folder here, and in screenshots/
     shot: str  # its name, without dots
-    word: str  # "same" passed; else differs, crowded, structure, size, blank, nan, gl-error, missing, …
+    word: str  # of `VERDICTS`, by this version or another
     message: str  # what was found, for a person
     renderer: str = ""  # slug of what drew it, as "llvmpipe"; "" where nothing was drawn
     numbers: dict[str, float] = field(default_factory=dict)  # what was measured, by name with its unit
@@ -160,7 +155,7 @@ class Record:
     @property
     def ok(self) -> bool:
         """Whether the shot passed."""
-        return self.word == PASSED
+        return verdict_on(self.word).passes
 
     @property
     def stamp(self) -> str:

@@ -18,9 +18,10 @@ import pytest
 from playground.data.image_files import read_png
 from playground.errors import DataError
 from playground.markup import Markup, tag
-from playground.verify.shots.page.document import CAPTIONS, MEANINGS
+from playground.verify.shots.page.document import CAPTIONS
 from playground.verify.shots.report import report_html, write_report
-from playground.verify.shots.results import NEVER_ACCEPTED, Actual, Record, flat, read_results, record_of
+from playground.verify.shots.results import Actual, Record, flat, read_results, record_of
+from playground.verify.shots.verdicts import VERDICTS
 
 from .pictures import BEFORE, TEXTS, picture
 
@@ -192,16 +193,15 @@ def test_every_word_has_its_own_explanation(leave) -> None:
     leave(actual=picture(1), expected=picture(2))
     (record,) = read_results(Path("results"))
     messages = set()
-    for word, meaning in MEANINGS.items():
-        if word == "same":
+    for word, verdict in VERDICTS.items():
+        if verdict.passes:
             continue
         page = Page(report_html([record_of(flat(record) | {"word": word, "tier": ""})], Path("results")))
-        assert page.text("p", class_="meaning") == meaning.message
-        messages.add(meaning.message)
+        assert page.text("p", class_="meaning") == verdict.meaning
+        messages.add(verdict.meaning)
         commands = [text for _, text in page.all("code")]
-        assert bool(commands) is (word not in NEVER_ACCEPTED)
-        assert meaning.broken is (word in NEVER_ACCEPTED)
-    assert len(messages) == len(MEANINGS) - 1
+        assert bool(commands) is verdict.acceptable
+    assert len(messages) == len(VERDICTS) - 1
     page = Page(
         report_html(
             [record_of(flat(record) | {"tier": "same build", "catches": "Any change."})], Path("results")

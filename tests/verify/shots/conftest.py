@@ -16,6 +16,9 @@ import pytest
 from playground.verify.shots import checking, collect, fixture  # noqa: F401
 from playground.verify.shots.references import Fingerprint
 from playground.verify.shots.suite import RenderedShot, RendererProcess, ShotCase
+from playground.verify.shots.verdicts import VERDICTS
+
+WORDS_FOR_PICTURES = VERDICTS.keys() - {"crash", "hang", "error"}
 
 # What drew a reference, as one build of Mesa says it.
 OURS = Fingerprint(

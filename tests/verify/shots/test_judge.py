@@ -16,7 +16,6 @@ from playground.verify.shots.judge import (
     OTHER_RENDERER,
     SAME_BUILD,
     STRUCTURE_ONLY,
-    WORDS,
     Judgement,
     judge,
     most_crowded,
@@ -25,7 +24,7 @@ from playground.verify.shots.judge import (
 from playground.verify.shots.references import Fingerprint, Reference, reference_texts
 
 from ...cases import each
-from .conftest import OURS
+from .conftest import OURS, WORDS_FOR_PICTURES
 
 SCREENSHOTS = Path(__file__).resolve().parent.parent.parent.parent / "screenshots"
 SIZE = (200, 100)  # pixels; 0.5 % of them are 100
@@ -60,7 +59,7 @@ def reference(pixels: np.ndarray, fingerprint: Fingerprint, name: str = "dawn.pn
 
 def by(actual: np.ndarray, drawn_by: Fingerprint, expected: np.ndarray = BASE, **wrong: str) -> Judgement:
     judgement, _ = judge(actual, OURS, [reference(expected, drawn_by)], **wrong)
-    assert judgement.word in WORDS
+    assert judgement.word in WORDS_FOR_PICTURES
     assert judgement.message.startswith(judgement.word)
     broken = judgement.word in ("nan", "gl-error")
     assert judgement.ok == (judgement.word == "same") == judgement.comparison.ok or broken
@@ -186,7 +185,7 @@ def shot(name: str) -> np.ndarray:
 def by_eye(actual: np.ndarray, expected: np.ndarray) -> Judgement:
     judgement, nearest = judge(actual, CARD, [], [reference(expected, OURS)])
     assert nearest is not None
-    assert judgement.word in WORDS
+    assert judgement.word in WORDS_FOR_PICTURES
     return judgement
 
 

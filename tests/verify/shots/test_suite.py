@@ -15,7 +15,7 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import ContextError, OpenGLFault
 from playground.sketch.model import Graph, Shot, Sketch
-from playground.verify.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, WORDS
+from playground.verify.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD
 from playground.verify.shots.references import fingerprint_of, read_reference, reference_path, write_reference
 from playground.verify.shots.suite import (
     Outcome,
@@ -28,6 +28,7 @@ from playground.verify.shots.suite import (
 )
 
 from ...sketch_texts import map_of_height
+from .conftest import WORDS_FOR_PICTURES
 
 LLVMPIPE = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa/X.org", "4.5 Mesa 22.3.6", 4)
 NEWER = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa", "4.5 Mesa 25.0.7", 4)
@@ -62,7 +63,7 @@ def taken(pixels: np.ndarray, **more: str) -> RenderedShot:
 
 def checked(case: ShotCase, pixels: np.ndarray, renderer: ContextInfo, **more: str) -> Outcome:
     outcome = check(case, taken(pixels, **more), renderer)
-    assert outcome.word in WORDS
+    assert outcome.word in WORDS_FOR_PICTURES
     assert outcome.message.startswith(outcome.word)
     assert outcome.ok is (outcome.word == "same")
     return outcome

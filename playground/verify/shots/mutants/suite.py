@@ -95,7 +95,7 @@ class MutantResult:
     def unseen(self) -> bool:
         """Whether the shot does not show the defect: no level differs by more than rounding may change it."""
         comparison = self.comparison
-        faint = comparison is not None and comparison.verdict == "same" and comparison.most <= ROUNDING
+        faint = comparison is not None and comparison.ok and comparison.most <= ROUNDING
         return faint and not self.mutant.exempt and not self.caught()
 
     @property

@@ -21,94 +21,8 @@ from playground._version import __version__
 from playground.errors import counted
 from playground.markup import Markup, joined, tag
 from playground.memo import INTERFACE
-from playground.verify.shots.results import FOLDER, FRAMES, NEVER_ACCEPTED, Record
-
-# ── what a word of a result means ────────────────────────────────────────────
-
-
-@dataclass(frozen=True, slots=True)
-class Meaning:
-    """What a word of a result means."""
-
-    label: str  # a few words, for a list
-    message: str  # what it is, and what to do
-    broken: bool = False  # whether there is no picture to trust
-
-
-MEANINGS = {
-    "same": Meaning("passed", "The picture is the one expected."),
-    "differs": Meaning(
-        "differs",
-        "The picture is not the reference, by more than the tier allows. If the change was meant,"
-        " accept the picture; if not, the difference shows where to look.",
-    ),
-    "crowded": Meaning(
-        "differs in one place",
-        "Few pixels differ, but they lie close together, as when a small thing was moved, lost or added."
-        " Rounding scatters its differences over the picture; this is something else.",
-    ),
-    "structure": Meaning(
-        "differs in structure",
-        "Another renderer drew the reference, so single levels mean nothing; but an eye would see this"
-        " difference. The FLIP map shows where.",
-    ),
-    "size": Meaning(
-        "another size",
-        "The picture has another size than the reference, so they cannot be compared pixel by pixel."
-        " Here their top left corners lie on each other.",
-    ),
-    "missing": Meaning(
-        "no reference",
-        "There is no reference yet, so nothing says whether this picture is right."
-        " Look at it closely, then accept it: later runs are compared with it.",
-    ),
-    "unreadable": Meaning(
-        "reference damaged",
-        "The reference is there but cannot be read. Take it from the history of the repository again,"
-        " or accept the new picture in its place.",
-    ),
-    "blank": Meaning(
-        "blank",
-        "Every pixel has the same colour, which is what most broken renders look like."
-        " A blank picture fails even if its reference is blank, unless the shot says allow_blank.",
-        broken=True,
-    ),
-    "nan": Meaning(
-        "not a number",
-        "Values that are no numbers, or infinite, were drawn. What a screen shows for them is undefined,"
-        " so the picture cannot be accepted, however it looks.",
-        broken=True,
-    ),
-    "gl-error": Meaning(
-        "OpenGL error",
-        "Drawing left an OpenGL error behind. Whatever the picture looks like, it is not to be trusted,"
-        " and cannot be accepted.",
-        broken=True,
-    ),
-    "error": Meaning(
-        "error",
-        "The shot could not be drawn or compared: something is wrong with it, or with a shader or a file.",
-        broken=True,
-    ),
-    "crash": Meaning(
-        "crash",
-        "The process that draws died before it gave a picture: the driver or its shader compiler crashed,"
-        " or memory ran out. The other shots were drawn by a new process.",
-        broken=True,
-    ),
-    "hang": Meaning(
-        "hang",
-        "Drawing took longer than its limit and was stopped: a loop without an end, or a shader that is"
-        " far too slow here. The other shots were drawn by a new process.",
-        broken=True,
-    ),
-}
-
-
-def meaning(word: str) -> Meaning:
-    """Return what a word means; of one that is not known, itself."""
-    return MEANINGS.get(word) or Meaning(word, "")
-
+from playground.verify.shots.results import FOLDER, FRAMES, Record
+from playground.verify.shots.verdicts import VERDICTS, verdict_on
 
 # ── one shot ─────────────────────────────────────────────────────────────────
 
@@ -164,12 +78,12 @@ def anchor(record: Record) -> str:
 
 def chip(word: str) -> Markup:
     """Return a word as a small mark; its colour only says again what the text says."""
-    return tag("span", meaning(word).label, class_="chip", data_word=word)
+    return tag("span", verdict_on(word).label, class_=f"chip {verdict_on(word).chip}")
 
 
 def can_be_accepted(record: Record) -> bool:
     """Whether a reference may be made of what was drawn."""
-    return not record.ok and record.word not in NEVER_ACCEPTED and "actual" in record.actual.pictures
+    return not record.ok and verdict_on(record.word).acceptable and "actual" in record.actual.pictures
 
 
 def accept_command(record: Record, folder: str) -> str:
@@ -181,7 +95,7 @@ def accept_command(record: Record, folder: str) -> str:
 def failure(record: Record, setting: ShotPageContext) -> Markup:
     """Return the article on a shot that failed."""
     heading = f"title-{anchor(record)}"
-    explained = (meaning(record.word).message, record.rules.catches)
+    explained = (verdict_on(record.word).meaning, record.rules.catches)
     return tag(
         "article",
         tag(
@@ -275,13 +189,7 @@ def _buttons(record: Record) -> Markup:
 
 def _accepting(record: Record, setting: ShotPageContext) -> Markup:
     if not can_be_accepted(record):
-        why = "No reference can be made of it: fix the sketch or the shader, then run the tests again."
-        if record.word not in NEVER_ACCEPTED:
-            why = "There is no picture here to accept; run the tests again."
-        elif record.word == "blank":
-            why = "No reference can be made of it, unless the shot says allow_blank."
-        elif record.word == "error":
-            why = "Nothing to accept: fix the reported error, then run the tests again."
+        why = verdict_on(record.word).refusal or "There is no picture here to accept; run the tests again."
         return tag("section", tag("p", why), class_="accepting")
     parts: list[Markup] = [tag("h3", "If this is right")]
     commands = [("accepts this very picture", accept_command(record, setting.folder))]
@@ -483,10 +391,10 @@ def _headline(failed: Sequence[Record], records: Sequence[Record]) -> str:
 
 def _facts(records: Sequence[Record], notes: Sequence[str]) -> Markup:
     words = Counter(record.word for record in records)
-    order = [*MEANINGS, *words]
+    order = [*VERDICTS, *words]
     counts = [
         tag("li", chip(word), f" {words[word]}")
-        for word in sorted(words, key=lambda word: (word == "same", order.index(word)))
+        for word in sorted(words, key=lambda word: (verdict_on(word).passes, order.index(word)))
     ]
     summary: list[Markup] = []
     builds = Counter(
@@ -516,7 +424,13 @@ def _facts(records: Sequence[Record], notes: Sequence[str]) -> Markup:
 def _list(failed: Sequence[Record]) -> Markup:
     words = Counter(record.word for record in failed)
     buttons = [
-        tag("button", f"{meaning(word).label} {number}", type="button", data_word=word, aria_pressed="false")
+        tag(
+            "button",
+            f"{verdict_on(word).label} {number}",
+            type="button",
+            data_word=word,
+            aria_pressed="false",
+        )
         for word, number in words.most_common()
     ]
     parts = [
