@@ -259,6 +259,12 @@ class Lesson:
             yield from texts_of(block)
 
 
+def block_classes(base: type[Block] = Block) -> list[type[Block]]:
+    """List the kinds of block that a lesson can have: the subclasses that have none themselves."""
+    kinds = base.__subclasses__()
+    return [base] if not kinds else [each for kind in kinds for each in block_classes(kind)]
+
+
 def translated_fields(kind: type[Block]) -> list[Field[Any]]:
     """List the fields of a kind of block that are texts: all that a translation may replace."""
     return [each for each in fields(kind) if "translated" in each.metadata]

@@ -21,7 +21,7 @@ from typing import Any
 from playground.course.document import Document, Fence, Piece, prose_of, read_document, texts_in
 from playground.course.fences import READERS, open_fence, read_fence
 from playground.course.library import SOURCE, lesson_file, lesson_names, number_of, parts
-from playground.course.model import Block, Lesson, Named, Prose, key_of, translated_fields
+from playground.course.model import Block, Lesson, Named, Prose, block_classes, key_of, translated_fields
 from playground.course.scenes import Sketches
 from playground.errors import SketchError, counted
 from playground.files import write_file
@@ -271,17 +271,17 @@ BLOCK_SECONDS = {
     "code": 30.0,
     "question": 30.0,
     "break": 120.0,
+    "measure": 0.0,
 }
 """[s] What a block takes besides its words: a picture to be looked at, a bug to be found."""
 
 TASK_SECONDS, KERNEL_SECONDS = 240.0, 360.0
 """[s] What an exercise or a challenge takes besides its words, and one in which a kernel is written."""
 
-_TASKS = ("exercise", "challenge")
-_READ = (
-    *("caption", "captions", "label", "labels", "text"),
-    *("ask", "choices", "answer", "hint", "fix", "solution"),
-)
+TASKS = ("exercise", "challenge")
+"""The kinds of block that count as exercises, and not as reading."""
+
+_READ = {key_of(text) for kind in block_classes(Named) for text in translated_fields(kind)} - {"alt"}
 _UNREAD = re.compile(r"\]\([^)]*\)|[#*`|]+")  # addresses of links, and marks
 _FORMULA = re.compile(r"(\$\$?)[^$]+\1")
 
@@ -311,11 +311,13 @@ def _reading_seconds(piece: Piece) -> float:
     if piece.kind != "fence":
         return _seconds(words_in(piece.text))
     kind = piece.info.partition(" ")[0]
-    return 0.0 if kind in _TASKS else _seconds(_block_words(piece)) + BLOCK_SECONDS.get(kind, 0.0)
+    if kind in TASKS:
+        return 0.0
+    return _seconds(_block_words(piece)) + (BLOCK_SECONDS[kind] if kind in READERS else 0.0)
 
 
 def _task_seconds(piece: Piece) -> float:
-    if piece.kind != "fence" or piece.info.partition(" ")[0] not in _TASKS:
+    if piece.kind != "fence" or piece.info.partition(" ")[0] not in TASKS:
         return 0.0
     own = KERNEL_SECONDS if "file" in _table(piece) else TASK_SECONDS
     return _seconds(_block_words(piece)) + own

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
@@ -274,16 +274,43 @@ def pictures_of(lesson: model.Lesson) -> list[Picture]:
 
 def pictures_in(block: model.Block) -> Iterator[Picture]:
     """Yield the pictures of a block: of a series each, of a bug the correct one and the broken one."""
-    if isinstance(block, model.Figure) and block.scene:
+    yield from PICTURES[type(block)](block)
+
+
+def _none(_: model.Block) -> Iterator[Picture]:
+    yield from ()
+
+
+def _single(block: model.Figure | model.Exercise | model.Challenge) -> Iterator[Picture]:
+    if block.scene:
         yield Picture(block.name, block.scene, block.alt)
-    elif isinstance(block, model.Steps | model.Slider | model.Compare):
-        for index, scene in enumerate(block.scenes):
-            yield Picture(f"{block.name}-{index}", scene, block.alt)
-    elif isinstance(block, model.Break) and block.scene:
+
+
+def _series(block: model.Steps | model.Slider | model.Compare) -> Iterator[Picture]:
+    for index, scene in enumerate(block.scenes):
+        yield Picture(f"{block.name}-{index}", scene, block.alt)
+
+
+def _correct_and_broken(block: model.Break) -> Iterator[Picture]:
+    if block.scene:
         yield Picture(block.name, block.scene)
         yield Picture(f"{block.name}-broken", broken(block), block.alt)
-    elif isinstance(block, model.Exercise | model.Challenge) and block.scene:
-        yield Picture(block.name, block.scene, block.alt)
+
+
+PICTURES: dict[type[model.Block], Callable[[Any], Iterator[Picture]]] = {
+    model.Prose: _none,
+    model.Figure: _single,
+    model.Steps: _series,
+    model.Slider: _series,
+    model.Compare: _series,
+    model.Code: _none,
+    model.Break: _correct_and_broken,
+    model.Question: _none,
+    model.Exercise: _single,
+    model.Challenge: _single,
+    model.Measure: _none,
+}
+"""What yields the pictures of each kind of block."""
 
 
 def broken(block: model.Break) -> model.Scene:

@@ -7,7 +7,7 @@ to be unfolded. The script turns them into sliders and swipes.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from latex2mathml.converter import convert
@@ -143,6 +143,7 @@ class LessonContext:
     live: Collection[str] = ()  # names of the blocks that a page can run
     blank: Callable[[Picture], bool] = lambda picture: False  # whether a picture shows next to nothing
     answers: str = "inline"  # one of ANSWERS
+    first: bool = False  # whether no picture of the page comes before: a figure is loaded at once
     at_end: list[Markup] = field(default_factory=list)  # answers, for the end of the page
 
     def line(self, markdown: str) -> Markup:
@@ -200,9 +201,7 @@ class LessonContext:
 
 def block_html(block: model.Block, setting: LessonContext, *, first: bool = False) -> Markup:
     """Return a block as HTML; the first picture of a page is loaded at once."""
-    if isinstance(block, model.Figure):
-        return _figure(block, setting, first)
-    return _WRITERS[type(block)](block, setting)
+    return WRITERS[type(block)](block, replace(setting, first=first))
 
 
 def open_command(lesson: model.Lesson) -> str:
@@ -215,14 +214,14 @@ def _prose(block: model.Prose, setting: LessonContext) -> Markup:
     return setting.prose(block.text if block.kind in ("heading", "code") else block.markdown)
 
 
-def _figure(block: model.Figure, setting: LessonContext, first: bool) -> Markup:
+def _figure(block: model.Figure, setting: LessonContext) -> Markup:
     (picture,) = pictures_in(block)
     dragged = None
     if block.sliders and block.name not in setting.live:
         label, command = setting.label, tag("code", open_command(setting.lesson))
         dragged = tag("small", label("in_window"), label("colon"), command, class_="in-window")
     caption = tag("figcaption", setting.line(block.caption), dragged)
-    image = setting.still(setting.image(picture, lazy=not first))
+    image = setting.still(setting.image(picture, lazy=not setting.first))
     return tag("figure", image, caption, id=block.name, **setting.started(block))
 
 
@@ -405,8 +404,9 @@ def _measure(block: model.Measure, setting: LessonContext) -> Markup:
     return tag("p", chip, Markup(" "), setting.line(block.sentence), id=block.name, class_="measure")
 
 
-_WRITERS: dict[type[model.Block], Callable[[Any, LessonContext], Markup]] = {
+WRITERS: dict[type[model.Block], Callable[[Any, LessonContext], Markup]] = {
     model.Prose: _prose,
+    model.Figure: _figure,
     model.Steps: _steps,
     model.Slider: _slider,
     model.Compare: _compare,
@@ -417,3 +417,4 @@ _WRITERS: dict[type[model.Block], Callable[[Any, LessonContext], Markup]] = {
     model.Challenge: _challenge,
     model.Measure: _measure,
 }
+"""What writes each kind of block."""

@@ -6,7 +6,7 @@ The data is that of ``LiveBlock`` in book_data.js.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -236,27 +236,23 @@ def lesson_data(lesson: model.Lesson, library: Library) -> LiveData:
 def block_data(block: model.Named, scenes: Scenes) -> LiveData | None:
     """Return what a block is in a page, if it can be live there."""
     try:
-        return _data(block, scenes)
+        return LIVE[type(block)](block, scenes)
     except PlaygroundError:
         return None
 
 
-def _data(block: model.Named, scenes: Scenes) -> LiveData | None:
-    if isinstance(block, model.Figure) and block.scene:
-        return {"kind": "figure", "scenes": [scenes.setting(block.scene)], "rows": list(block.sliders)}
-    if isinstance(block, model.Steps):
-        return _steps(block, scenes)
-    if isinstance(block, model.Slider):
-        return _slider(block, scenes)
-    if isinstance(block, model.Compare):
-        return {"kind": "compare", "scenes": [scenes.setting(scene) for scene in block.scenes]}
-    if isinstance(block, model.Break) and block.scene:
-        return _break(block, block.scene, scenes)
-    if isinstance(block, model.Challenge) or (isinstance(block, model.Exercise) and block.checks):
-        return task_data(block, scenes)
-    if isinstance(block, model.Exercise) and block.scene:
-        return _exercise(block.scene, scenes)
-    return None
+def _still(block: model.Named, scenes: Scenes) -> None:
+    """Return nothing: the block is text, or stays the picture that it is."""
+
+
+def _figure(block: model.Figure, scenes: Scenes) -> LiveData | None:
+    if block.scene is None:
+        return None
+    return {"kind": "figure", "scenes": [scenes.setting(block.scene)], "rows": list(block.sliders)}
+
+
+def _compare(block: model.Compare, scenes: Scenes) -> LiveData:
+    return {"kind": "compare", "scenes": [scenes.setting(scene) for scene in block.scenes]}
 
 
 def _steps(block: model.Steps, scenes: Scenes) -> LiveData | None:
@@ -288,13 +284,15 @@ _NUMBERS = ("int", "uint", "float", "vec2", "vec3", "vec4")
 """The types of parameters between whose values there are others."""
 
 
-def _break(block: model.Break, scene: model.Scene, scenes: Scenes) -> LiveData:
+def _break(block: model.Break, scenes: Scenes) -> LiveData | None:
     """Give the correct scene, and the lines that hold the bug."""
+    if block.scene is None:
+        return None
     region = bug_region(block)
     first = region.before.count("\n") + 1 if region.before else 0
     return {
         "kind": "break",
-        "scenes": [scenes.setting(scene)],
+        "scenes": [scenes.setting(block.scene)],
         "file": block.file,
         "first": first,  # lines of the file before those that are shown
         "rest": region.after.count("\n") + 1 if region.after else 0,  # and after them
@@ -303,8 +301,11 @@ def _break(block: model.Break, scene: model.Scene, scenes: Scenes) -> LiveData:
     }
 
 
-def _exercise(scene: model.Scene, scenes: Scenes) -> LiveData | None:
-    """Give the solution's scene, and the one to begin from; nothing where that is the same."""
+def _exercise(block: model.Exercise, scenes: Scenes) -> LiveData | None:
+    """Give what judges it; else the solution's scene and the one to begin from, unless they are the same."""
+    if block.checks or block.scene is None:
+        return task_data(block, scenes) if block.checks else None
+    scene = block.scene
     solution = scenes.setting(scene)
     begin = scenes.setting(replace(scene, sketch=beginning(scene)))
     paths = [path for path, _ in scene.values if "." in path]
@@ -313,6 +314,21 @@ def _exercise(scene: model.Scene, scenes: Scenes) -> LiveData | None:
     rows = [row["path"] for row in scenes.sketches[solution["sketch"]]["shown"] if row["main"]]
     rows = list(dict.fromkeys([*paths, *rows]))
     return {"kind": "exercise", "scenes": [solution], "begin": begin, "rows": rows}
+
+
+LIVE: dict[type[model.Named], Callable[[Any, Scenes], LiveData | None]] = {
+    model.Figure: _figure,
+    model.Steps: _steps,
+    model.Slider: _slider,
+    model.Compare: _compare,
+    model.Code: _still,
+    model.Break: _break,
+    model.Question: _still,
+    model.Exercise: _exercise,
+    model.Challenge: task_data,
+    model.Measure: _still,
+}
+"""What gives a page the data of each kind of block."""
 
 
 def beginning(scene: model.Scene) -> Sketch:

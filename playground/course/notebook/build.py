@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
 
 from playground.course import model
@@ -43,8 +43,12 @@ def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number], lessons: 
     return str(form.writes(notebook)) + "\n"
 
 
+Cell = tuple[str, str]
+"""Its kind, "markdown" or "code", and its text."""
+
+
 class _Writer:
-    """Writes the cells of one lesson: (kind, text)."""
+    """Writes the cells of one lesson."""
 
     def __init__(self, lesson: model.Lesson, numbers: Mapping[str, Number], lessons: Collection[str]) -> None:
         self.lesson = lesson
@@ -52,7 +56,7 @@ class _Writer:
         self.numbers = numbers
         self.label = labels("book", lesson.language)
 
-    def cells(self) -> Iterator[tuple[str, str]]:
+    def cells(self) -> Iterator[Cell]:
         """Yield all cells."""
         lesson, label = self.lesson, self.label
         minutes = label("minutes", reading=lesson.minutes, exercises=lesson.exercise_minutes)
@@ -63,7 +67,7 @@ class _Writer:
         opening = f'lesson = open_lesson("{lesson.name}"{language})'
         yield "code", f"from playground.course.notebook import open_lesson\n\n{opening}"
         for block in lesson.blocks:
-            yield from self.block(block)
+            yield from WRITERS[type(block)](self, block)
         sections = ", ".join(label("section", n=number) for number in lesson.thesis)
         papers = "\n".join(f"- {paper}" for paper in lesson.papers)
         thesis = f"## {label('thesis')}\n\n{THESIS}{label('colon')}{sections}."
@@ -72,37 +76,43 @@ class _Writer:
             entries = "\n".join(f"- {term.definition(lesson.language)}" for term in terms)
             yield "markdown", f"## {label('glossary')}\n\n{entries}"
 
-    def block(self, block: model.Block) -> Iterator[tuple[str, str]]:
-        """Yield the cells of a block: its text, then the code that draws it."""
-        label, text = self.label, self.text
-        if isinstance(block, model.Prose):
-            mark = f"{'#' * block.level} " if block.kind == "heading" else ""
-            yield "markdown", text(f"{mark}{block.markdown}")
-        elif isinstance(block, model.Figure | model.Steps | model.Slider | model.Compare):
-            yield "markdown", f"*{text(block.caption)}*"
-            yield "code", f'lesson.show("{block.name}")'
-        elif isinstance(block, model.Code):
-            title = label("code_of", file=f"glsl/{block.file}")
-            caption = f"{text(block.caption)} " if block.caption else ""
-            yield "markdown", f"```glsl\n{excerpt(block.file, block.anchor).text}\n```\n\n{caption}({title})"
-        elif isinstance(block, model.Break):
-            yield "markdown", f"### {label('bug')}\n\n{text(block.ask)}"
-            yield "code", f'lesson.show("{block.name}")'
-            yield "markdown", label("your_task")
-            yield "code", f'lesson.fix("{block.name}", r"""\n{bug_region(block).broken}\n""")'
-            folded = (self.folded("hint", block.hint), self.folded("fix", block.fix))
-            yield "markdown", "\n\n".join(folded)
-        elif isinstance(block, model.Question):
-            choices = "".join(f"\n- {text(choice)}" for choice in block.choices)
-            question = f"### {label('question')}\n\n{text(block.ask)}\n{choices}".rstrip()
-            yield "markdown", f"{question}\n\n{self.folded('answer', block.answer)}"
-        elif isinstance(block, model.Exercise | model.Challenge):
-            yield from self.task(block)
-        elif isinstance(block, model.Measure) and block.sentence:
-            yield "markdown", text(block.sentence)
+    def prose(self, block: model.Prose) -> Iterator[Cell]:
+        """Yield a text."""
+        mark = f"{'#' * block.level} " if block.kind == "heading" else ""
+        yield "markdown", self.text(f"{mark}{block.markdown}")
+
+    def figure(self, block: model.Figure | model.Steps | model.Slider | model.Compare) -> Iterator[Cell]:
+        """Yield a caption, then the code that draws the picture or the series."""
+        yield "markdown", f"*{self.text(block.caption)}*"
+        yield "code", f'lesson.show("{block.name}")'
+
+    def code(self, block: model.Code) -> Iterator[Cell]:
+        """Yield lines of a shader."""
+        title = self.label("code_of", file=f"glsl/{block.file}")
+        caption = f"{self.text(block.caption)} " if block.caption else ""
+        yield "markdown", f"```glsl\n{excerpt(block.file, block.anchor).text}\n```\n\n{caption}({title})"
+
+    def bug(self, block: model.Break) -> Iterator[Cell]:
+        """Yield a bug: its picture, its lines to be fixed, hint and fix folded away."""
+        yield "markdown", f"### {self.label('bug')}\n\n{self.text(block.ask)}"
+        yield "code", f'lesson.show("{block.name}")'
+        yield "markdown", self.label("your_task")
+        yield "code", f'lesson.fix("{block.name}", r"""\n{bug_region(block).broken}\n""")'
+        yield "markdown", "\n\n".join((self.folded("hint", block.hint), self.folded("fix", block.fix)))
+
+    def question(self, block: model.Question) -> Iterator[Cell]:
+        """Yield a question, its answer folded away."""
+        choices = "".join(f"\n- {self.text(choice)}" for choice in block.choices)
+        question = f"### {self.label('question')}\n\n{self.text(block.ask)}\n{choices}".rstrip()
+        yield "markdown", f"{question}\n\n{self.folded('answer', block.answer)}"
+
+    def measure(self, block: model.Measure) -> Iterator[Cell]:
+        """Yield a number with its sentence; nothing where only prose names it."""
+        if block.sentence:
+            yield "markdown", self.text(block.sentence)
             yield "code", f'lesson.measure("{block.name}")'
 
-    def task(self, block: model.Exercise | model.Challenge) -> Iterator[tuple[str, str]]:
+    def task(self, block: model.Exercise | model.Challenge) -> Iterator[Cell]:
         """Yield an exercise, its solution folded away; one that checks itself has a cell that does."""
         say, folded = labels("tasks", self.lesson.language), []
         if isinstance(block, model.Exercise):
@@ -142,6 +152,22 @@ class _Writer:
             bold = link.string[: link.start()].endswith("**") and link.string[link.end() :].startswith("**")
             return name if bold else f"**{name}**"
         return f"[{text}]({what}.ipynb)" if kind == "lesson" and what in self.lessons else text
+
+
+WRITERS: dict[type[model.Block], Callable[[_Writer, Any], Iterator[Cell]]] = {
+    model.Prose: _Writer.prose,
+    model.Figure: _Writer.figure,
+    model.Steps: _Writer.figure,
+    model.Slider: _Writer.figure,
+    model.Compare: _Writer.figure,
+    model.Code: _Writer.code,
+    model.Break: _Writer.bug,
+    model.Question: _Writer.question,
+    model.Exercise: _Writer.task,
+    model.Challenge: _Writer.task,
+    model.Measure: _Writer.measure,
+}
+"""What writes each kind of block."""
 
 
 def _begun(task: model.Exercise | model.Challenge) -> str:

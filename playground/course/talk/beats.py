@@ -14,6 +14,7 @@ import re
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from playground.course.library import labels
 from playground.course.model import (
@@ -258,41 +259,34 @@ BOARD_WORDS = 70
 _ROWS = 9  # of a table
 
 
-def beats_of_block(block: Block, formula: Markdown, lesson: Lesson) -> Iterator[Beat]:
-    """Yield the beats of a block, each with a picture only where it brings one."""
+def _figure(block: Figure, lesson: Lesson) -> Iterator[Beat]:
+    still = Still(block.name) if block.scene else None
+    yield _told("figure", block.caption, aside=block.alt, still=still, sliders=block.sliders)
+
+
+def _slider(block: Slider, lesson: Lesson) -> Iterator[Beat]:
+    yield _told("sweep", block.caption, aside=block.alt, still=Still(block.name), sliders=(block.parameter,))
+
+
+def _exercise(block: Exercise, lesson: Lesson) -> Iterator[Beat]:
     say = labels("talk", lesson.language)
-    if isinstance(block, Prose):
-        yield from _prose(block, formula)
-    elif isinstance(block, Figure):
-        still = Still(block.name) if block.scene else None
-        yield _told("figure", block.caption, aside=block.alt, still=still, sliders=block.sliders)
-    elif isinstance(block, Steps):
-        yield from _steps(block, say["step"])
-    elif isinstance(block, Slider):
-        yield _told(
-            "sweep", block.caption, aside=block.alt, still=Still(block.name), sliders=(block.parameter,)
-        )
-    elif isinstance(block, Compare):
-        yield from _variants(block)
-    elif isinstance(block, Code):
-        yield from _code(block, say["part"])
-    elif isinstance(block, Break):
-        yield from _bug(block, lesson)
-    elif isinstance(block, Question):
-        yield from _question(block, lesson)
-    elif isinstance(block, Exercise):
-        aside = "\n\n".join(filter(None, [block.hint, f"**{say['solution']}.** {block.solution}"]))
-        label = say["exercise"].format(lesson.number_of(block))
-        still = Still(block.name, started=True) if block.begin is not None else None
-        sliders = () if block.file else block.sliders
-        yield _told("exercise", block.ask, label=label, aside=aside, still=still, sliders=sliders)
-        if block.scene is not None and block not in lesson.sections[-1].blocks:  # the text goes on from it
-            yield _told("solution", block.solution, label=say["solution"], still=Still(block.name))
-    elif isinstance(block, Measure):
-        if block.sentence:
-            yield _told("text", block.sentence, label=say["measured"])
-    elif isinstance(block, Challenge):
-        yield _told("challenge", block.ask, label=say["challenge"], still=Still(block.name))
+    aside = "\n\n".join(filter(None, [block.hint, f"**{say['solution']}.** {block.solution}"]))
+    label = say["exercise"].format(lesson.number_of(block))
+    still = Still(block.name, started=True) if block.begin is not None else None
+    sliders = () if block.file else block.sliders
+    yield _told("exercise", block.ask, label=label, aside=aside, still=still, sliders=sliders)
+    if block.scene is not None and block not in lesson.sections[-1].blocks:  # the text goes on from it
+        yield _told("solution", block.solution, label=say["solution"], still=Still(block.name))
+
+
+def _challenge(block: Challenge, lesson: Lesson) -> Iterator[Beat]:
+    label = labels("talk", lesson.language)["challenge"]
+    yield _told("challenge", block.ask, label=label, still=Still(block.name))
+
+
+def _measure(block: Measure, lesson: Lesson) -> Iterator[Beat]:
+    if block.sentence:
+        yield _told("text", block.sentence, label=labels("talk", lesson.language)["measured"])
 
 
 def _told(kind: str, text: Markdown, **more: object) -> Beat:
@@ -300,7 +294,7 @@ def _told(kind: str, text: Markdown, **more: object) -> Beat:
     return Beat(kind, 0, "", shown=shown_of(text), notes=text, **more)  # type: ignore[arg-type]
 
 
-def _prose(block: Prose, formula: Markdown) -> Iterator[Beat]:
+def _prose(block: Prose, lesson: Lesson, formula: Markdown = "") -> Iterator[Beat]:
     text = block.markdown
     if block.kind == "code":
         lines = [line for line in text.strip().split("\n") if not line.startswith("```")]
@@ -339,7 +333,8 @@ def _listed(text: Markdown) -> Iterator[Markdown]:
     yield "\n".join(part)
 
 
-def _steps(block: Steps, label: str) -> Iterator[Beat]:
+def _steps(block: Steps, lesson: Lesson) -> Iterator[Beat]:
+    label = labels("talk", lesson.language)["step"]
     last = block.iterations[-1] if block.iterations else len(block.scenes)
     for index in range(len(block.scenes)):
         own = block.captions[index] if block.captions else ""
@@ -357,7 +352,7 @@ def _steps(block: Steps, label: str) -> Iterator[Beat]:
         )
 
 
-def _variants(block: Compare) -> Iterator[Beat]:
+def _variants(block: Compare, lesson: Lesson) -> Iterator[Beat]:
     if len(block.scenes) == 2 and comparable(*block.scenes):
         still = Still(block.name, BOTH)
         yield _told("compare", block.caption, names=block.labels, aside=block.alt, still=still)
@@ -369,7 +364,8 @@ def _variants(block: Compare) -> Iterator[Beat]:
         yield beat if index == 0 else replace(beat, notes=name)
 
 
-def _code(block: Code, label: str) -> Iterator[Beat]:
+def _code(block: Code, lesson: Lesson) -> Iterator[Beat]:
+    label = labels("talk", lesson.language)["part"]
     excerpt_text = excerpt(block.file, block.anchor)
     parts = _shared(excerpt_text.text.split("\n"))
     line = excerpt_text.line
@@ -412,6 +408,21 @@ def _question(block: Question, lesson: Lesson) -> Iterator[Beat]:
         yield _told("answer", block.answer, label=say["answer"])
 
 
+BEATS: dict[type[Block], Callable[[Any, Lesson], Iterator[Beat]]] = {
+    Prose: _prose,
+    Figure: _figure,
+    Steps: _steps,
+    Slider: _slider,
+    Compare: _variants,
+    Code: _code,
+    Break: _bug,
+    Question: _question,
+    Exercise: _exercise,
+    Challenge: _challenge,
+    Measure: _measure,
+}
+"""What yields the beats of each kind of block, each with a picture only where it brings one."""
+
 _TASKS = ("exercise", "challenge")
 
 
@@ -427,10 +438,9 @@ def beats_of(lesson: Lesson) -> tuple[Beat, ...]:
             mine.append(_title(lesson))
         at = 0
         while at < len(blocks):
-            taken = _joined(blocks, at)
-            for beat in beats_of_block(blocks[at], taken[0], lesson):
-                mine.append(replace(beat, page=page, heading=section.title or lesson.title))
-            at += taken[1]
+            told, count = _told_next(blocks[at:], lesson)
+            mine += [replace(beat, page=page, heading=section.title or lesson.title) for beat in told]
+            at += count
         coming = next((beat for beat in mine if beat.still is not None), None)
         if coming is not None and coming.kind not in ("broken", "solution", *_TASKS):
             shown, sliders = coming.still, coming.sliders
@@ -471,10 +481,9 @@ def _title(lesson: Lesson) -> Beat:
     )
 
 
-def _joined(blocks: list[Block], at: int) -> tuple[Markdown, int]:
-    """Return the formula that follows a paragraph, and how many blocks are taken together."""
-    first, second = blocks[at], blocks[at + 1] if at + 1 < len(blocks) else None
-    follows = isinstance(second, Prose) and second.kind == "formula"
-    if follows and isinstance(first, Prose) and first.kind == "paragraph":
-        return second.markdown, 2  # type: ignore[union-attr]
-    return "", 1
+def _told_next(blocks: list[Block], lesson: Lesson) -> tuple[Iterator[Beat], int]:
+    """Return the next beats, and how many blocks they tell: a paragraph and the formula after it are one."""
+    pair = [block for block in blocks[:2] if isinstance(block, Prose)]
+    if [block.kind for block in pair] == ["paragraph", "formula"]:
+        return _prose(pair[0], lesson, pair[1].markdown), 2
+    return BEATS[type(blocks[0])](blocks[0], lesson), 1
