@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import pytest
-
 from playground.errors import DataError, OpenGLFault, PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.verify.shots import page
 from playground.verify.shots.verdicts import PASSED, VERDICTS, verdict_on, word_of
@@ -20,17 +18,15 @@ def test_one_verdict_passes() -> None:
     assert [word for word, verdict in VERDICTS.items() if verdict.passes] == [PASSED]
 
 
-@pytest.mark.always
-@pytest.mark.parametrize("word", VERDICTS)
-def test_a_verdict_has_all_it_needs(word: str) -> None:
-    verdict = VERDICTS[word]
-    assert re.fullmatch(r"[a-z-]+", word), "a file name, an attribute and a property of JUnit XML hold it"
-    assert verdict.label and verdict.meaning.endswith(".")
-    assert f".chip.{verdict.chip} {{" in STYLE
-    assert verdict.acceptable is not verdict.refusal.endswith(".")
-    assert not (verdict.passes and verdict.refusal)
-    assert verdict.measured or not (verdict.passes or verdict.tolerable), "it follows from numbers"
-    assert word in WORDS_FOR_PICTURES or verdict.refusal, "there is no picture to make a reference of"
+def test_each_verdict_has_all_it_needs() -> None:
+    for word, verdict in VERDICTS.items():
+        assert re.fullmatch(r"[a-z-]+", word), "a file name, an attribute and a property of JUnit XML hold it"
+        assert verdict.label and verdict.meaning.endswith("."), word
+        assert f".chip.{verdict.chip} {{" in STYLE, word
+        assert verdict.acceptable is not verdict.refusal.endswith("."), word
+        assert not (verdict.passes and verdict.refusal), word
+        assert verdict.measured or not (verdict.passes or verdict.tolerable), f"{word} follows from numbers"
+        assert word in WORDS_FOR_PICTURES or verdict.refusal, f"{word}: no picture to make a reference of"
 
 
 def test_no_two_verdicts_read_alike() -> None:
