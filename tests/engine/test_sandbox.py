@@ -86,10 +86,10 @@ def test_a_good_sketch_is_good_by_both_drivers(sandbox, folder):
 def test_the_worker_is_warm(sandbox, folder):
     """The same process answers, mistakes between or not: only its first answer waits for a context."""
     sandbox.run(TrySketch(folder.one(GOOD)))
-    pid = sandbox._pool.pids[0]
+    pid = sandbox.pids[0]
     assert not sandbox.run(TrySketch(folder.one(GOOD.replace("texel.x", "wrong")))).ok
     assert sandbox.run(TrySketch(folder.one(GOOD.replace("texel.x", "texel.y")))).ok
-    assert sandbox._pool.pids[0] == pid
+    assert sandbox.pids[0] == pid
 
 
 def test_a_mistake_comes_back_with_its_place(sandbox, folder):
@@ -157,13 +157,14 @@ def test_what_crashes_the_compiler_kills_the_worker_only(sandbox, folder):
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
-def at_work(sandbox: Sandbox) -> int:
-    """Wait until the child is in the middle of a pass; return its process."""
+def at_work(sandbox: Sandbox, request: TrySketch) -> int:
+    """Submit a request, wait until the child is in the middle of a pass, and return its process."""
+    task = sandbox.submit(request)
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         assert sandbox.poll() is None
-        if sandbox._newest.progress is not None:
-            return sandbox._pool.pids[0]
+        if task.progress is not None:
+            return sandbox.pids[0]
         time.sleep(0.005)
     raise AssertionError("it did not begin")
 
@@ -178,8 +179,7 @@ def at_work(sandbox: Sandbox) -> int:
 )
 def test_a_crash_says_how_and_where(sandbox, folder, number, message):
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
-    sandbox.submit(TrySketch(folder.one(SLOW)))
-    os.kill(at_work(sandbox), signal.Signals[number])
+    os.kill(at_work(sandbox, TrySketch(folder.one(SLOW))), signal.Signals[number])
     report = wait(sandbox)
     assert isinstance(report.error, SandboxCrash)
     assert report.error.diagnostics[0].message == message
@@ -191,17 +191,17 @@ def test_a_crash_says_how_and_where(sandbox, folder, number, message):
 def test_a_worker_that_died_is_replaced_before_it_is_needed(sandbox, folder):
     report = sandbox.run(TrySketch(folder.one(CRASH)))
     assert isinstance(report.error, SandboxCrash)
-    pid = sandbox._pool.pids[0]
+    pid = sandbox.pids[0]
     assert is_alive(pid)
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
-    assert sandbox._pool.pids[0] == pid
+    assert sandbox.pids[0] == pid
 
 
 @pytest.mark.slow
 def test_a_worker_that_dies_idle_costs_nobody_an_answer(sandbox, folder):
     """It is dead when it is handed something, or dies just then: another is asked."""
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
-    os.kill(sandbox._pool.pids[0], signal.SIGKILL)
+    os.kill(sandbox.pids[0], signal.SIGKILL)
     report = sandbox.run(TrySketch(folder.one(GOOD)))
     assert report.ok, report.error
 
@@ -212,7 +212,7 @@ def test_a_worker_killed_while_it_starts_is_tried_again(folder, kills, is_tried)
     request, killed = TrySketch(folder.one(GOOD), (32, 32)), []
 
     def kill() -> None:
-        for pid in sandbox._pool.pids:
+        for pid in sandbox.pids:
             if len(killed) < kills and pid not in killed:
                 killed.append(pid)
                 os.kill(pid, signal.SIGKILL)
@@ -264,7 +264,7 @@ def test_a_long_text_is_no_mistake(sandbox, folder):
 
 def test_what_takes_too_long_is_stopped(sandbox, folder, monkeypatch):
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
-    pid = sandbox._pool.pids[0]
+    pid = sandbox.pids[0]
     with monkeypatch.context() as patch:
         patch.setattr(sandbox, "limit_seconds", 0.7)
         report = sandbox.run(TrySketch(folder.one(SLOW)))
@@ -316,15 +316,14 @@ def test_submit_never_waits_and_the_newest_wins(folder):
     ]
     with Sandbox(limit_seconds=PATIENCE) as sandbox:
         assert sandbox.run(TrySketch(folder.one(GOOD))).ok
-        pid = sandbox._pool.pids[0]
-        sandbox.submit(TrySketch(folder.one(SLOW)))
-        at_work(sandbox)
+        pid = sandbox.pids[0]
+        at_work(sandbox, TrySketch(folder.one(SLOW)))
         for request in wrong:
             sandbox.submit(request)
-        assert sandbox.busy and sandbox._pool.pids[0] == pid and is_alive(pid), "nothing waited for the child"
+        assert sandbox.busy and sandbox.pids[0] == pid and is_alive(pid), "nothing waited for the child"
         report = wait(sandbox)
         assert "wrong19" in str(report.error), "within the limit: the child that hung was killed for it"
-        assert sandbox._pool.pids[0] != pid and is_gone(pid)
+        assert sandbox.pids[0] != pid and is_gone(pid)
         assert not sandbox.busy
         assert sandbox.poll() is None
 
@@ -333,16 +332,15 @@ def test_submit_never_waits_and_the_newest_wins(folder):
 def test_slow_worker_has_spare_ready_to_replace_it(folder):
     with Sandbox(limit_seconds=3600.0) as sandbox:
         assert sandbox.run(TrySketch(folder.one(GOOD))).ok
-        sandbox.submit(TrySketch(folder.one(SLOW)))
-        first = at_work(sandbox)
+        first = at_work(sandbox, TrySketch(folder.one(SLOW)))
         end = time.monotonic() + PATIENCE
-        while len(sandbox._pool.pids) < 2 and time.monotonic() < end:
+        while len(sandbox.pids) < 2 and time.monotonic() < end:
             assert sandbox.poll() is None
             time.sleep(0.005)
-        spare = sandbox._pool.pids[1]
+        spare = sandbox.pids[1]
         sandbox.submit(TrySketch(folder.one(GOOD)))
         assert wait(sandbox).ok
-        assert sandbox._pool.pids[0] == spare and is_gone(first)
+        assert sandbox.pids[0] == spare and is_gone(first)
     assert is_gone(spare)
 
 
@@ -372,14 +370,14 @@ def test_memory_has_a_limit(folder):
 def test_close_leaves_no_process(folder):
     sandbox = Sandbox()
     sandbox.start()
-    while not sandbox._pool.pids:
+    while not sandbox.pids:
         time.sleep(0.005)
-    (pid,) = sandbox._pool.pids
+    (pid,) = sandbox.pids
     sandbox.close()
     assert is_gone(pid)
     with Sandbox(limit_seconds=PATIENCE) as busy:
         busy.run(TrySketch(folder.one(GOOD)))
-        pid = busy._pool.pids[0]
+        pid = busy.pids[0]
         busy.submit(TrySketch(folder.one(SLOW)))
     assert is_gone(pid), "what it was at would have taken it an hour"
     assert not busy.busy
@@ -411,7 +409,7 @@ pool._GRACE, pool.max_wall_seconds = 8.0, lambda _: 0.01  # [s] after which a pr
 sandbox.Pool = partial(pool.Pool, ends_with_parent=PIPE)
 with Sandbox(limit_seconds=90.0) as sandbox:
     sandbox.start()
-    print(sandbox.run(TrySketch(load("good_sketch.toml"))).ok, sandbox._pool.pids[0], flush=True)
+    print(sandbox.run(TrySketch(load("good_sketch.toml"))).ok, sandbox.pids[0], flush=True)
     sandbox.run(TrySketch(load("slow_sketch.toml")))
 """
 

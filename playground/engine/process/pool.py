@@ -36,7 +36,7 @@ CANCEL_SECONDS = 10.0
 
 _GRACE = 60.0  # [s] that the parent has to end a request before the system does
 _POLL = 0.05  # [s] between two looks at the clock
-_PATIENCE = 1.0  # [s] that a process with nothing to do may take to end by itself
+PATIENCE = 1.0  # [s] that a process with nothing to do may take to end by itself
 _MAX_LOST = 3  # processes that may die before a request has begun
 _SUSPICIOUS = 0.3  # [s] after which a spare is started for a process that has not answered
 _FATAL = (SandboxCrash, MemoryError, UnexpectedError)  # after which a process is of no more use
@@ -238,6 +238,11 @@ class PoolOwner:
         self._pool.shutdown(cancel_futures=True)
 
     @property
+    def pids(self) -> list[int]:
+        """The numbers of its processes, the spare's last."""
+        return self._pool.pids
+
+    @property
     def busy(self) -> bool:
         """Whether the newest request waits for its outcome to be taken."""
         return self._newest is not None
@@ -289,7 +294,7 @@ class _Slot(threading.Thread):
                 except BaseException as error:  # no process can be started, or a bug of ours
                     task.set_exception(error)
             del task  # it may hold much
-        self._end(_PATIENCE)
+        self._end(PATIENCE)
         self.ended = True
         self._working.set()  # so that the thread that looks at the clock ends
 
@@ -359,7 +364,7 @@ class _Slot(threading.Thread):
         """Return what the end of the process means for the task."""
         process = self.process
         seconds, limit = (process.clock.total, process.exceeded) if process is not None else (0.0, 0.0)
-        outcome = replace(self._end(_PATIENCE), seconds=seconds, progress=task.progress)
+        outcome = replace(self._end(PATIENCE), seconds=seconds, progress=task.progress)
         if self._closed or task.stop_at < math.inf:
             return replace(outcome, kind="refused", error=Cancelled())
         if limit and (task.begun or not outcome.started):
@@ -370,7 +375,7 @@ class _Slot(threading.Thread):
         """Return the process, once it is ready; start one where there is none that runs."""
         process = self.process
         if process is not None and (process.requests >= self._pool.limits.requests or not process.runs):
-            self._end(_PATIENCE)
+            self._end(PATIENCE)
         process = self._process()
         if process.ready is None:
             process.clock.begin("start")

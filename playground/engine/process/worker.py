@@ -119,35 +119,35 @@ class Encoder:
     """
 
     def __init__(self) -> None:
-        self._known: dict[int, tuple[str, Kernel]] = {}  # by identity: held, so that it stays its own
-        self._encoded = self._known  # of the last message, which may not have been sent
+        self.known: dict[int, tuple[str, Kernel]] = {}  # by identity: held, so that it stays its own
+        self._encoded = self.known  # of the last message, which may not have been sent
         self._names = itertools.count()
 
     def encode(self, message: object) -> bytes:
         """Return a message as bytes; call ``sent`` once the other end has got them."""
         stream = io.BytesIO()
-        pickler = _Pickler(stream, self._known, self._names)
+        pickler = _Pickler(stream, self.known, self._names)
         pickler.dump(message)
         self._encoded = pickler.used
         return pickle.dumps(pickler.news, pickle.HIGHEST_PROTOCOL) + stream.getvalue()
 
     def sent(self) -> None:
         """Note that the last message was sent: its kernels are known at the other end."""
-        self._known = self._encoded
+        self.known = self._encoded
 
 
 class Decoder:
     """The child's end of an ``Encoder``."""
 
     def __init__(self) -> None:
-        self._known: dict[str, Kernel] = {}
+        self.known: dict[str, Kernel] = {}
 
     def decode(self, data: bytes) -> Any:
         """Return the message that an ``Encoder`` wrote."""
         stream = io.BytesIO(data)
-        unpickler = _Unpickler(stream, self._known | pickle.load(stream))
+        unpickler = _Unpickler(stream, self.known | pickle.load(stream))
         message = unpickler.load()
-        self._known = unpickler.used
+        self.known = unpickler.used
         return message
 
 
@@ -156,14 +156,14 @@ class _Pickler(pickle.Pickler):
         self, stream: io.BytesIO, known: dict[int, tuple[str, Kernel]], names: Iterator[int]
     ) -> None:
         super().__init__(stream, pickle.HIGHEST_PROTOCOL)
-        self._known, self._names = known, names
+        self.known, self._names = known, names
         self.used: dict[int, tuple[str, Kernel]] = {}
         self.news: dict[str, Kernel] = {}
 
     def persistent_id(self, thing: object) -> str | None:
         if not isinstance(thing, Kernel):
             return None
-        named = self._known.get(id(thing)) or self.used.get(id(thing))
+        named = self.known.get(id(thing)) or self.used.get(id(thing))
         if named is None:
             named = str(next(self._names)), thing
             self.news[named[0]] = thing
@@ -174,11 +174,11 @@ class _Pickler(pickle.Pickler):
 class _Unpickler(pickle.Unpickler):
     def __init__(self, stream: io.BytesIO, kernels: dict[str, Kernel]) -> None:
         super().__init__(stream)
-        self._known = kernels
+        self.known = kernels
         self.used: dict[str, Kernel] = {}
 
     def persistent_load(self, name: Any) -> Kernel:
-        kernel = self.used[name] = self._known[name]
+        kernel = self.used[name] = self.known[name]
         return kernel
 
 

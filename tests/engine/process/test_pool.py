@@ -52,7 +52,7 @@ def test_it_is_warm_answers_and_ends_by_itself(pool: Pool, alive: Alive, monkeyp
     monkeypatch.setattr(
         child_module.ChildProcess, "end", lambda *arguments: ends.append(real(*arguments)) or ends[-1]
     )
-    monkeypatch.setattr(pool_module, "_PATIENCE", 60.0)
+    monkeypatch.setattr(pool_module, "PATIENCE", 60.0)
     pool.shutdown()
     assert [end.status for end in ends] == [0] and not alive(pid)
     pool.shutdown()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -10,8 +11,6 @@ from functools import cached_property
 import pytest
 
 from playground.engine.process.worker import (
-    _HEAD,
-    _MARK,
     Decoder,
     Encoder,
     NotAFrame,
@@ -111,7 +110,7 @@ def test_neither_end_holds_what_is_no_longer_used(ends, folder):
         sketch = load(folder)
         ends.send(TrySketch(sketch))
         distinct = len({id(kernel) for kernel in sent_alone(sketch.graph)})
-        assert len(ends.encoder._known) == len(ends.decoder._known) == distinct
+        assert len(ends.encoder.known) == len(ends.decoder.known) == distinct
 
 
 class Meanwhile(str):
@@ -172,15 +171,22 @@ def test_what_is_read_is_what_was_written(data: bytes):
         read_frame(stream)
 
 
+def framed(data: bytes) -> bytes:
+    """Return the bytes of a frame: its mark of 8 bytes, its length, the data."""
+    stream = io.BytesIO()
+    write_frame(stream, data)
+    return stream.getvalue()
+
+
 @pytest.mark.parametrize(
     ("data", "kind"),
     [
         (b"", EOFError),
-        (_HEAD.pack(_MARK, 3)[:9], EOFError),
-        (_HEAD.pack(_MARK, 30) + b"cut short", EOFError),
+        (framed(b"abc")[:9], EOFError),
+        (framed(b"cut short" + bytes(21))[:-21], EOFError),
         (b"Mesa", NotAFrame),
         (b"Mesa: error: ZINK: failed to choose pdev", NotAFrame),
-        (_HEAD.pack(_MARK, 2**60), NotAFrame),  # it is not even tried to read so much
+        (framed(b"")[:8] + struct.pack("<Q", 2**60), NotAFrame),  # it is not even tried to read so much
     ],
 )
 def test_what_is_no_frame_is_recognised(data: bytes, kind: type[Exception]):
