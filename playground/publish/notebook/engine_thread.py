@@ -15,7 +15,7 @@ from playground.engine.engine import Engine
 T = TypeVar("T")
 
 _THREAD = ThreadPoolExecutor(1, thread_name_prefix="notebook")
-_open: list[Engine] = []  # one at most
+engines: list[Engine] = []  # one at most
 
 
 def on_engine(work: Callable[[Engine], T]) -> T:
@@ -29,11 +29,11 @@ def release_engine() -> None:
 
 
 def _engine() -> Engine:
-    if not _open:
-        _open.append(headless())
-    return _open[0]
+    if not engines:
+        engines.append(headless())
+    return engines[0]
 
 
 def _release() -> None:
-    while _open:
-        _open.pop().release()
+    while engines:
+        engines.pop().release()

@@ -161,7 +161,7 @@ _MAX_SLIDERS = 8  # sliders of a sketch that does not name its main parameters
 
 Values = Mapping[str, Value]
 
-_open: WeakSet[SketchesWidget] = WeakSet()
+open_widgets: WeakSet[SketchesWidget] = WeakSet()
 
 
 class _ByPath(traitlets.TraitType[Any, Any]):
@@ -254,8 +254,8 @@ class SketchesWidget(LiveWidget):
         self._take(sketches)
         super().__init__(sides=list(self.SIDES), size=size, draws=draws, language=language, **traits, **made)
         self.observe(self._remade, names=list(self.SIDES))
-        self.on_msg(self._asked)
-        _open.add(self)
+        self.on_msg(self.receive)
+        open_widgets.add(self)
 
     def set_state(self, sync_data: object) -> None:
         """Take the state of a browser; raise ``ParameterError`` for what is none."""
@@ -371,7 +371,8 @@ class SketchesWidget(LiveWidget):
 
     # ── pictures that the kernel draws ─────────────────────────────────────────
 
-    def _asked(self, _: object, content: Any, _buffers: object) -> None:
+    def receive(self, _: object, content: Any, _buffers: object) -> None:
+        """Answer a message of the browser that requests an image."""
         asked = content.get("draw")
         if asked is None:
             return
@@ -395,11 +396,11 @@ class SketchesWidget(LiveWidget):
 
     def close(self) -> None:
         """End the widget, in every browser; with the last one the engine's memory is released."""
-        was_open = self in _open
+        was_open = self in open_widgets
         super().close()
-        _open.discard(self)
+        open_widgets.discard(self)
         self.page, self.outline, self.picture = "", "", b""
-        if was_open and not _open:
+        if was_open and not open_widgets:
             release_engine()
 
 

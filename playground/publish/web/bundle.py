@@ -39,11 +39,11 @@ def sources_in(text: str) -> str:
     return match[1] if match else ""
 
 
-def hash_of_sources() -> str:
+def hash_of_sources(folder: Path = _HERE) -> str:
     """Return the hash of the sources as they are in a checkout, as build.mjs works it out."""
-    names = sorted(p.name for p in (_HERE / "runtime").iterdir() if p.suffix in (".js", ".css", ".json"))
+    names = sorted(p.name for p in (folder / "runtime").iterdir() if p.suffix in (".js", ".css", ".json"))
     digest = hashlib.sha256()
     others = ("build.mjs", "package-lock.json", "../../shader/widgets.json")
     for name in (*others, *(f"runtime/{name}" for name in names)):
-        digest.update(f"{name}\0".encode() + (_HERE / name).read_bytes() + b"\0")
+        digest.update(f"{name}\0".encode() + (folder / name).read_bytes() + b"\0")
     return digest.hexdigest()[:16]

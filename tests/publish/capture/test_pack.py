@@ -287,7 +287,7 @@ def test_files_from_outside_are_refused_in_a_sentence(folder: Path, tmp_path: Pa
 def test_pack_cache_keeps_latest_and_check_finds_packed_files(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(unpack, "_MAX_PACKS", 2)
+    monkeypatch.setattr(unpack, "MAX_PACKS", 2)
     for number in range(4):
         (folder / "README.md").write_text(f"{number}")
         latest = unpacked(pack(load(folder), tmp_path / f"{number}.zip"))

@@ -45,5 +45,5 @@ def engine(any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Engi
     monkeypatch.setattr(widgets, "on_engine", on_engine)
     monkeypatch.setattr(widgets, "release_engine", lambda: None)
     yield any_engine
-    for widget in list(widgets._open):
+    for widget in list(widgets.open_widgets):
         widget.close()

@@ -52,7 +52,7 @@ def answers(monkeypatch):
         sent = []
         monkeypatch.setattr(widget, "send", lambda content, buffers=None: sent.append((content, buffers)))
         usual = {"id": "a-1", "side": 0, "values": {}, "camera": VIEW, "time": 0.0, "moving": False}
-        widget._asked(widget, {"draw": {**usual, "size": list(SIZE), **asked}}, [])
+        widget.receive(widget, {"draw": {**usual, "size": list(SIZE), **asked}}, [])
         return sent
 
     return ask
@@ -257,12 +257,12 @@ def test_two_are_compared_by_their_values_or_as_sketches(engine, slope):
 def test_closing_the_last_releases_what_all_hold(slope):
     """The engine of all widgets, with its context; the next one opens another."""
     first, other = (playground.widget(slope, size=SIZE) for _ in range(2))
-    (engine,) = engine_thread._open
+    (engine,) = engine_thread.engines
     first.close()
-    assert engine_thread._open == [engine] and not engine._context.released
+    assert engine_thread.engines == [engine] and not engine.released
     other.close()
     other.close()
-    assert engine_thread._open == [] and engine._context.released and other.page == "" == first.page
+    assert engine_thread.engines == [] and engine.released and other.page == "" == first.page
     again = playground.widget(slope, size=SIZE)
     assert again.page
     again.close()
