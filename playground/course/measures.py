@@ -41,7 +41,7 @@ _KM2 = 1e6  # [m²]
 
 def pits(values: Values, grid: Grid) -> float:
     """Return the fraction of the texels, borders aside, that no neighbour is lower than, 0..1."""
-    slopes, _ = _ways(values, grid)
+    slopes, _ = flow_directions(values, grid)
     return float((slopes[1:-1, 1:-1] <= 0).mean())
 
 
@@ -75,13 +75,13 @@ def slope_area_power(values: Values, grid: Grid, low: float, high: float) -> flo
 
 def _between(values: Values, grid: Grid, low: float, high: float) -> tuple[Values, Values]:
     """Return the slopes above 0 and the areas of the texels that drain so much; edges have no slope."""
-    slopes, receivers = _ways(values, grid)
-    areas = _areas(values, receivers) * grid.spacing[0] * grid.spacing[1]
+    slopes, receivers = flow_directions(values, grid)
+    areas = drainage_areas(values, receivers) * grid.spacing[0] * grid.spacing[1]
     chosen = (slopes > 0) & (areas >= low * _KM2) & (areas <= high * _KM2)
     return slopes[chosen], areas[chosen]
 
 
-def _ways(values: Values, grid: Grid) -> tuple[Values, NDArray[np.intp]]:
+def flow_directions(values: Values, grid: Grid) -> tuple[Values, NDArray[np.intp]]:
     """Return the slope down to the steepest neighbour, and its number; 0 and the own number where none is."""
     ny, nx = values.shape
     numbers = np.arange(ny * nx).reshape(ny, nx)
@@ -96,7 +96,7 @@ def _ways(values: Values, grid: Grid) -> tuple[Values, NDArray[np.intp]]:
     return slopes, receivers
 
 
-def _areas(values: Values, receivers: NDArray[np.intp]) -> Values:
+def drainage_areas(values: Values, receivers: NDArray[np.intp]) -> Values:
     """Return how many texels drain through each, itself included: handed on from the highest one down."""
     areas = np.ones(values.size)
     down = receivers.ravel()

@@ -88,7 +88,7 @@ class Parts:
         self._versions_before, cache.versions = cache.versions, max(cache.versions, self.limit)
         self._cutter = Cutter(engine.ctx, plot)
         self._spare: list[Slot] = []
-        self._all: list[Slot] = []  # those being filled included
+        self.all_slots: list[Slot] = []  # those being filled included
         self._clock = 0
         self._sky_at: tuple[float, tuple[float, float, float]] | None = None  # the sky's light at an hour
         self._chosen: tuple[int, int, int] | None = None
@@ -103,7 +103,7 @@ class Parts:
     @property
     def bytes(self) -> int:
         """Bytes of all slots."""
-        return sum(slot.bytes for slot in self._all)
+        return sum(slot.bytes for slot in self.all_slots)
 
     @property
     def visible(self) -> tuple[PartName, ...]:
@@ -256,7 +256,7 @@ class Parts:
         """Return a slot to fill: a spare one, a new one, or the one least recently wanted."""
         if self._spare:
             return self._spare.pop()
-        if len(self._all) < self.limit:
+        if len(self.all_slots) < self.limit:
             return self._new_slot()
 
         def recency(name: PartName) -> tuple[int, int, PartName]:
@@ -279,17 +279,17 @@ class Parts:
             woods.filter = (ctx.LINEAR_MIPMAP_LINEAR, ctx.LINEAR)
         for texture in filter(None, (heights, ground, woods)):
             texture.repeat_x = texture.repeat_y = False
-        self._all.append(Slot(heights, ground, woods, np.zeros((n, n), np.float32)))
-        return self._all[-1]
+        self.all_slots.append(Slot(heights, ground, woods, np.zeros((n, n), np.float32)))
+        return self.all_slots[-1]
 
     def release(self) -> None:
         """Release every texture."""
         self.engine.cache.versions = self._versions_before
         if self._open is not None:
             self._open[1].close()
-        for slot in self._all:
+        for slot in self.all_slots:
             slot.release()
-        self._all.clear()
+        self.all_slots.clear()
         self.slots.clear()
         self._spare.clear()
         self._cutter.release()

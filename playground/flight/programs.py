@@ -20,18 +20,19 @@ _BEGINNING = f"#version 330\nconst float AIR_DIRECTIONS = {AIR_DIRECTIONS}.0;\n"
 
 def terrain_program(ctx: moderngl.Context) -> moderngl.Program:
     """Compile the program that draws a part."""
-    return ctx.program(vertex_shader=_read("terrain.vert"), fragment_shader=_read("terrain.frag"))
+    return ctx.program(vertex_shader=read_shader("terrain.vert"), fragment_shader=read_shader("terrain.frag"))
 
 
 def trees_program(ctx: moderngl.Context) -> moderngl.Program:
     """Compile the program that draws trees."""
-    return ctx.program(vertex_shader=_read("trees.vert"), fragment_shader=_read("trees.frag"))
+    return ctx.program(vertex_shader=read_shader("trees.vert"), fragment_shader=read_shader("trees.frag"))
 
 
 def screen_program(ctx: moderngl.Context, name: str) -> moderngl.Program:
     """Compile a program that fills its target, by the name of its fragment shader."""
-    return ctx.program(vertex_shader=_read("screen.vert"), fragment_shader=_read(f"{name}.frag"))
+    return ctx.program(vertex_shader=read_shader("screen.vert"), fragment_shader=read_shader(f"{name}.frag"))
 
 
-def _read(name: str) -> str:
+def read_shader(name: str) -> str:
+    """Read a shader of the flight, its includes resolved."""
     return _BEGINNING + read_source(_SHADERS / name, (_SHADERS, GLSL)).code

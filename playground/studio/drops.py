@@ -31,7 +31,7 @@ def opened_from(sketch: Path) -> tuple[Path, str]:
     return unpacked_beside(path) if is_pack(path) and path.is_file() else (find(sketch), "")
 
 
-def _is_sketch(path: Path) -> bool:
+def is_sketch(path: Path) -> bool:
     """Return whether a file or a folder opens as a sketch."""
     if path.is_dir():
         return (path / "sketch.toml").is_file() or dialects().image_of(path) is not None
@@ -62,7 +62,7 @@ class Drops:
             if is_pack(path) and path.is_file():
                 self._open_pack(path)
                 return
-            if _is_sketch(path):
+            if is_sketch(path):
                 self.actions.open(path)
                 return
         files = [path for path in paths if path.suffix.lower() in _FILES and path.is_file()]

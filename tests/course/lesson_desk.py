@@ -270,7 +270,7 @@ class Harness(Bare):
         )
         self.lessons = Lessons(host)
         self.bench.additions = [self.lessons]
-        self.reader._catalogue._sketches = SHIPPED
+        self.reader.catalogue.sketches = SHIPPED
         self.bench.interface.panel_shown = True
 
     @property

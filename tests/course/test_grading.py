@@ -33,7 +33,7 @@ from playground.course.grading.report import (
     table_bytes,
     write_report,
 )
-from playground.course.grading.submissions import _TOO_MANY, find_submissions, lessons_in, read_submission
+from playground.course.grading.submissions import TOO_MANY, find_submissions, lessons_in, read_submission
 from playground.course.handout import assignments_of, normalised
 from playground.course.library import HERE, in_language, patterns
 from playground.course.model import Challenge
@@ -378,7 +378,7 @@ def test_every_grading_message_has_a_french_one():
         for node in ast.walk(ast.parse(file.read_text("utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Said":
                 (said,) = node.args
-                used.add(_TOO_MANY if isinstance(said, ast.Name) else ast.literal_eval(said))
+                used.add(TOO_MANY if isinstance(said, ast.Name) else ast.literal_eval(said))
     assert used - {"{name} {what}"} == set(names)
 
 

@@ -243,7 +243,7 @@ def test_opened_copy_keeps_reader_sketch_and_its_autosave(harness):
     assert harness.session.drafts.texts and harness.reader.figure.before_lesson is None
     harness.session.drafts.set("height.seed", 7)
     harness.run_frames(3)
-    assert dict(harness.autosave._latest.edits.values) == {"height.seed": 7}, "it is remembered"
+    assert dict(harness.autosave.latest.edits.values) == {"height.seed": 7}, "it is remembered"
     harness.reader.show(block(harness, "seeds"))
     harness.run_frames(4)
     harness.reader.go_back()
@@ -298,7 +298,7 @@ def test_dropped_sketch_leaves_figure_even_of_same_file(harness):
     assert value(harness, "height.seed") == 41
     harness.session.drafts.set("height.seed", 42)
     harness.run_frames(3)
-    assert dict(harness.autosave._latest.edits.values) == {"height.seed": 42}, "it is remembered"
+    assert dict(harness.autosave.latest.edits.values) == {"height.seed": 42}, "it is remembered"
 
 
 def test_playing_on_with_the_sketch_that_is_open_keeps_its_undo(harness):
@@ -543,12 +543,12 @@ def test_while_a_picture_is_tried_the_one_before_stays_as_it_was(harness):
     harness.reader.show(block(harness, "rubble"))
     harness.run_frames(3)
     seen = as_seen(harness)
-    harness.session.drafts._checks = replace(harness.session.drafts._checks, sandbox=Silent())
+    harness.session.drafts.checks = replace(harness.session.drafts.checks, sandbox=Silent())
     harness.reader.go(1)
     harness.run_frames(3)
     assert harness.reader.figure.busy and harness.session.view.steps == {}
     np.testing.assert_array_equal(as_seen(harness), seen)
-    harness.session.drafts._checks = replace(harness.session.drafts._checks, sandbox=None)
+    harness.session.drafts.checks = replace(harness.session.drafts.checks, sandbox=None)
     harness.reader.show(block(harness, "halves"))
     harness.run_frames(3)
     assert not harness.reader.figure.busy and harness.session.view.steps == {"height.raw": 0, "phase": 0}

@@ -219,8 +219,8 @@ def test_areas_are_those_of_a_flood():
     heights = valley(41, 57) + 1e-5 * np.random.default_rng(2).random((41, 57))
     assert measures.pits(heights, STEEP) == 0.0
     square = Grid((10.0, 10.0), 500.0)
-    slopes, receivers = measures._ways(heights, square)
-    np.testing.assert_array_equal(measures._areas(heights, receivers), drained_areas(heights))
+    slopes, receivers = measures.flow_directions(heights, square)
+    np.testing.assert_array_equal(measures.drainage_areas(heights, receivers), drained_areas(heights))
     assert slopes[20, 30] == pytest.approx(0.001 * 500 / 10, rel=0.05)
 
 

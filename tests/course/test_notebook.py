@@ -238,7 +238,7 @@ def test_a_picture_that_fails_ends_the_wait_as_well(lesson, opened, monkeypatch)
     widget = opened.show("land")
     sent = []
     monkeypatch.setattr(widget, "send", sent.append)
-    monkeypatch.setattr(widget, "_draw", lambda _: 1 / 0)
+    monkeypatch.setattr(widget, "draw", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         widget.values = {"height.smoothing": 0.2}
     assert sent == [{"drawn": True}]

@@ -394,7 +394,7 @@ def process():
 @pytest.fixture
 def opened(task, engine, process, monkeypatch):
     monkeypatch.setattr(notebook_lesson, "on_engine", lambda work: work(engine))
-    monkeypatch.setattr(notebook_lesson, "_judge", lambda: process)
+    monkeypatch.setattr(notebook_lesson, "judge_process", lambda: process)
     return lambda *value: NotebookLesson(task(*value).lesson)
 
 

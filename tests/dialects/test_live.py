@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.studio.drops import _is_sketch
+from playground.studio.drops import is_sketch
 from playground.studio.problems.problems import Problems
 from playground.studio.session import Session
 
@@ -152,7 +152,7 @@ def test_what_is_dropped_opens(tmp_path):
     files = {"a.json": export(one("Image", PLAIN), one("Buffer A", PLAIN, output=257)), "b.json": '{"x": 1}'}
     Case("", "dropped", {**files, "t/Image.glsl": PLAIN}, "").write(tmp_path)
     (tmp_path / "none").mkdir()
-    opens = {name: _is_sketch(tmp_path / name) for name in ("a.json", "b.json", "t", "none")}
+    opens = {name: is_sketch(tmp_path / name) for name in ("a.json", "b.json", "t", "none")}
     assert opens == {"a.json": True, "b.json": False, "t": True, "none": False}
 
 

@@ -185,8 +185,8 @@ def test_a_flight_of_ten_minutes_at_full_speed_keeps_its_memory(small_engine, te
     slots = flight.parts.limit
     flight = next(flights)
     assert flight.craft.steps == steps and flight.craft.seconds == pytest.approx(600.0)
-    assert flight.parts.made > 100 and len(flight.parts._all) <= slots < 30
-    assert flight.parts.bytes == len(flight.parts._all) * next(iter(flight.parts.slots.values())).bytes
+    assert flight.parts.made > 100 and len(flight.parts.all_slots) <= slots < 30
+    assert flight.parts.bytes == len(flight.parts.all_slots) * next(iter(flight.parts.slots.values())).bytes
     assert small_engine.cache.bytes <= small_engine.cache.limit
     assert small_engine.runner.pool.bytes <= small_engine.runner.pool.limit
     assert small_engine.runs["height.detail"] <= 3

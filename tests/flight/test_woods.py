@@ -166,8 +166,8 @@ def test_no_tree_pops_along_a_flight_of_240_frames(ctx: moderngl.Context) -> Non
 
 @pytest.mark.slow
 def test_without_the_fade_trees_would_pop(ctx: moderngl.Context, monkeypatch: pytest.MonkeyPatch) -> None:
-    read = programs._read
-    monkeypatch.setattr(programs, "_read", lambda name: read(name).replace("* small *", "*"))
+    read = programs.read_shader
+    monkeypatch.setattr(programs, "read_shader", lambda name: read(name).replace("* small *", "*"))
     with Engine(ctx, cache_bytes=128 * 2**20) as engine:
         most, _, bound = pops(engine, 120)
     assert max(most) > bound

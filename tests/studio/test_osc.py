@@ -69,7 +69,7 @@ class Surface:
 
     def close(self) -> None:
         self.ear.close()
-        self.client._sock.close()
+        self.client.close()
 
 
 @pytest.fixture
@@ -255,9 +255,9 @@ def test_what_waits_is_bounded():
     osc, heard = Osc(None, None), Heard()
     osc.start(heard, lambda: None)  # type: ignore[arg-type]
     for n in range(3 * MAX_WAITING):
-        osc._put(message(f"/a/{n}", 1.0))
-        osc._put(message("/playground/undo"))
-        osc._put(message("/a/0", float(n)))
+        osc.put(message(f"/a/{n}", 1.0))
+        osc.put(message("/playground/undo"))
+        osc.put(message("/a/0", float(n)))
     osc.take()
     assert [address for address, _ in heard.messages].count("/playground/undo") == MAX_WAITING
     assert len(heard.messages) == 2 * MAX_WAITING and len(heard.reports) == 1
@@ -281,7 +281,7 @@ def test_bytes_that_are_no_osc_raise_nothing():
         deep = b"#bundle\0" + struct.pack(">Q", 1) + struct.pack(">i", len(deep)) + deep
     wrong = (b"/", b"/a\0\0\0,f\0\0", b"\0" * 64, b"#bundle\0", deep, bytes(range(256)) * 8)
     for data in wrong:
-        osc._put(data)
+        osc.put(data)
         osc.take()
     assert heard.messages == [] and heard.reports
 

@@ -45,7 +45,7 @@ Act = Callable[..., None]
 def act(bare: Bare, tmp_path: Path) -> Iterator[Act]:
     """Give a function that draws a frame of the picture's mouse at (700, 360)."""
     painting, io = bare.bench.painting, imgui.get_io()
-    painting.folder, painting._now = tmp_path, lambda: bare.time
+    painting.folder, painting.now = tmp_path, lambda: bare.time
     hand = PictureMouse(bare.session, painting)
 
     def frame(*, down: bool = False, wheel: float = 0.0, keys: tuple[imgui.Key, ...] = ()) -> None:

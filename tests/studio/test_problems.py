@@ -283,7 +283,7 @@ def test_without_an_editor_it_opens_here_is_edited_and_saved(
     first = harness.bench.problems.all[0]
     harness.click(f"{first.location}##place")
     (editing,) = harness.bench.files.editing
-    view = code_window._view_of(editing)
+    view = editing.view
     cursor = view.editor.get_main_cursor_position()
     assert (cursor.line, cursor.index) == (2, first.column - 1)
     assert view.editor.has_markers() and not unsaved(harness.bench.files.editing)
@@ -342,7 +342,7 @@ def test_new_lines_are_indented_as_the_file_is(
     (folder / "wave.glsl").write_text(text, encoding="utf-8")
     harness.bench.files.open(folder / "wave.glsl", 1, column, here=True)
     harness.run_frames(3)
-    editor = code_window._view_of(harness.bench.files.editing[0]).editor
+    editor = harness.bench.files.editing[0].view.editor
     assert editor.get_text() == text
     for letter in typed:
         if letter == "\n":
@@ -376,7 +376,7 @@ def test_notices_leave_the_close_button_free(
         harness, "draw", lambda: (draw(), draw_notices(harness.bench.notices, harness.theme, area))[0]
     )
     if right:  # where the button's left edge is under the notices' right edge
-        monkeypatch.setattr(code_window, "_place", lambda *_: (700.0, 30.0, 560.0, 300.0))
+        monkeypatch.setattr(code_window, "window_place", lambda *_: (700.0, 30.0, 560.0, 300.0))
     harness.run_frames(4)
     shown = imgui.internal.find_window_by_name("wave.glsl###wave.glsl")
     edge, top, high = shown.pos.x + shown.size.x, shown.pos.y, imgui.get_frame_height()
@@ -395,7 +395,7 @@ def test_closing_asks(harness: Harness, folder: Path, button: str, mine: bool, o
     harness.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
     harness.run_frames(3)
     harness.type("// mine ")
-    code_window._view_of(harness.bench.files.editing[0]).closing = True
+    harness.bench.files.editing[0].view.closing = True
     harness.run_frames(3)
     harness.click(button)
     assert ("mine" in (folder / "wave.glsl").read_text(encoding="utf-8")) == mine

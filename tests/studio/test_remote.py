@@ -108,7 +108,7 @@ def test_requests_that_may_not_ask_are_refused_and_do_nothing(remote: Harness):
 def test_it_listens_on_this_machine_alone(remote: Harness):
     opened(remote)
     server = remote.remotes.server
-    assert server is not None and server._socket.getsockname()[0] == "127.0.0.1"
+    assert server is not None and server.socket.getsockname()[0] == "127.0.0.1"
 
 
 # ── what is answered ─────────────────────────────────────────────────────────
@@ -373,13 +373,13 @@ def test_ten_thousand_values_lose_neither_the_last_nor_an_error(remote: Harness)
 
 
 def test_a_reader_that_does_not_read_costs_no_memory(remote: Harness):
-    from playground.studio.remote.server import IN_FLIGHT, _Client
+    from playground.studio.remote.server import IN_FLIGHT, Client
 
     class Socket:
         closed = False
 
-    async def go() -> _Client:
-        client = _Client(Socket())  # type: ignore
+    async def go() -> Client:
+        client = Client(Socket())  # type: ignore
         for n in range(5000):
             client.tell(
                 [{"event": "values", "values": {"a": n, f"b{n % 3}": n}}, {"event": "time", "time": n}]
@@ -390,8 +390,8 @@ def test_a_reader_that_does_not_read_costs_no_memory(remote: Harness):
         return client
 
     client = asyncio.run(go())
-    assert len(client._events) == 2 and client._events["time"]["time"] == 4999
-    assert client._events["values"]["values"] == {"a": 4999, "b0": 4998, "b1": 4999, "b2": 4997}
+    assert len(client.events) == 2 and client.events["time"]["time"] == 4999
+    assert client.events["values"]["values"] == {"a": 4999, "b0": 4998, "b1": 4999, "b2": 4997}
 
 
 def test_more_clients_than_may_listen_are_refused(remote: Harness):

@@ -92,7 +92,7 @@ def read(session: Session, name: str) -> np.ndarray:
 def stroke(painting: Painting, *places: tuple[float, float], seconds: float = 0.05) -> None:
     painting.press(places[0])
     for position in places:
-        painting._now.now += seconds  # type: ignore[attr-defined]
+        painting.now.now += seconds  # type: ignore[attr-defined]
         painting.move(position)
     painting.release()
     painting.settle()
@@ -158,7 +158,7 @@ def test_stroke_ended_with_button_down_is_fully_undoable(painting: Painting, act
     getattr(painting, act)()
     ended = layer.pixels.copy()
     for position in (PLACE, (0.6, 0.55)):  # the button is still down
-        painting._now.now += 0.05  # type: ignore[attr-defined]
+        painting.now.now += 0.05  # type: ignore[attr-defined]
         painting.move(position)
     painting.release()
     painting.settle()

@@ -157,7 +157,7 @@ def test_a_flood_loses_no_last_value_and_frames_go_on(driven: Driven) -> None:
         for _ in range(20):
             client.send_message("/height/level", last)
             time.sleep(0.01)
-        client._sock.close()
+        client.close()
 
     asyncio.run(sockets(COUNT // 2, 0.5))  # until the engine's cache is full
     figures = {}

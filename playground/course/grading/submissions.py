@@ -40,7 +40,7 @@ _FIRST_MARK = b"PK\x03\x04"  # of a zip's first file; section 4.3.7
 _END_MARK = b"PK\x05\x06"  # of a zip's list; APPNOTE 6.3.10, section 4.3.16
 _ZIP64_MARK, _ZIP64_BYTES = b"PK\x06\x07", 20  # of what points to a larger list; section 4.3.15
 _END_BYTES = 22 + 2**16  # its record and the longest comment
-_TOO_MANY = "holds more than {most} files; expected the folder of the hand-out"
+TOO_MANY = "holds more than {most} files; expected the folder of the hand-out"
 _BY_SYSTEMS = ("__macosx", ".ds_store", "thumbs.db", "desktop.ini")
 
 
@@ -97,7 +97,7 @@ def _folder_entries(top: Path) -> Iterator[Entry]:
                 continue
             count += 1
             if count > MAX_FILES:
-                raise DataError(Said(_TOO_MANY, most=MAX_FILES))
+                raise DataError(Said(TOO_MANY, most=MAX_FILES))
             if item.is_dir(follow_symlinks=False):
                 if path.count("/") < _MAX_DEPTH:
                     waiting.append((Path(item.path), f"{path}/"))
@@ -214,12 +214,12 @@ def _check_list(path: Path) -> None:
     # With this mark before the end record, that of a larger list (zip64) counts, whatever is written here.
     larger = tail[max(end_mark - _ZIP64_BYTES, 0) : end_mark].startswith(_ZIP64_MARK)
     if larger or count > MAX_FILES or length > _MAX_LIST_BYTES:
-        raise DataError(Said(_TOO_MANY, most=MAX_FILES))
+        raise DataError(Said(TOO_MANY, most=MAX_FILES))
 
 
 def _check_zip(items: list[zipfile.ZipInfo], size: int) -> None:
     if len(items) > MAX_FILES:
-        raise DataError(Said(_TOO_MANY, most=MAX_FILES))
+        raise DataError(Said(TOO_MANY, most=MAX_FILES))
     whole = sum(item.file_size for item in items)
     if sum(item.compress_size for item in items) > size:
         raise DataError(Said("its files overlap, as those of a zip bomb do; it is not unpacked"))

@@ -212,7 +212,8 @@ def open_lesson(name: str, language: str = SOURCE) -> NotebookLesson:
 
 
 @cache
-def _judge() -> JudgeProcess:
+def judge_process() -> JudgeProcess:
+    """Return the one process that checks tasks, started at the first call."""
     return JudgeProcess()
 
 
@@ -297,7 +298,7 @@ class NotebookLesson:
         task = self._task(name)
         if not isinstance(task, model.Exercise):
             raise SketchError(f"block '{name}' is a picture to match: lesson.match scores it")
-        verdict = _judge().check(task, _work(task, work))
+        verdict = judge_process().check(task, _work(task, work))
         assert isinstance(verdict, Verdict)
         return Checked(verdict, self.lesson.language)
 
@@ -306,7 +307,7 @@ class NotebookLesson:
         task = self._task(name)
         if not isinstance(task, model.Challenge):
             raise SketchError(f"block '{name}' is no picture to match: lesson.check checks it")
-        match = _judge().check(task, _work(task, work))
+        match = judge_process().check(task, _work(task, work))
         assert isinstance(match, Match)
         self._best[name] = max(match.score, self._best.get(name, 0.0))
         return Matched(match, self._best[name], self.lesson.language)

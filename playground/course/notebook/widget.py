@@ -32,7 +32,7 @@ class PictureWidget(LiveWidget):
         labels: Sequence[str] = (),
         language: str = "en",
     ) -> None:
-        self._draw = draw
+        self.draw = draw
         values = {control["key"]: control["value"] for control in controls}
         super().__init__(
             picture=draw(values),
@@ -49,7 +49,7 @@ class PictureWidget(LiveWidget):
         if self.drawn_by == BROWSER:
             return
         try:
-            self.picture = self._draw(self.values)
+            self.picture = self.draw(self.values)
             self.mistake = ""
         except PlaygroundError as error:
             self.mistake = str(error)

@@ -49,7 +49,7 @@ class Catalogue:
     """The lessons of one window; ``say`` reports errors."""
 
     say: Callable[[str], None]
-    _sketches: Sketches = field(default_factory=Sketches)
+    sketches: Sketches = field(default_factory=Sketches)
     _listed: dict[str, list[Summary]] = field(default_factory=dict)  # by language
     _missing: set[str] = field(default_factory=set)  # lessons reported to have no translation
 
@@ -73,11 +73,11 @@ class Catalogue:
         from playground.course.read import read_lesson
 
         try:
-            return read_lesson(name, language, self._sketches)
+            return read_lesson(name, language, self.sketches)
         except PlaygroundError:
             if language == SOURCE:
                 raise
-            lesson = read_lesson(name, SOURCE, self._sketches)
+            lesson = read_lesson(name, SOURCE, self.sketches)
             if name not in self._missing:
                 self._missing.add(name)
                 self.say(untranslated)
@@ -181,7 +181,7 @@ class Reader:
             clear=self._clear,
             lesson=lambda: self.progress.lesson,
         )
-        self._catalogue = Catalogue(bench.notices.say)
+        self.catalogue = Catalogue(bench.notices.say)
         self._due = math.inf  # when what plays goes on
         self._hid = False  # the parameters' panel, to make room
 
@@ -212,7 +212,7 @@ class Reader:
     @property
     def summaries(self) -> list[Summary]:
         """All lessons, in their order."""
-        return self._catalogue.listed(self.language)
+        return self.catalogue.listed(self.language)
 
     def open(self, name: str = "", *, language: str = "", page: int | None = None, show: bool = True) -> bool:
         """Open a lesson, at the page where it was left; return whether that could be done.
@@ -224,7 +224,7 @@ class Reader:
         if language:
             self.progress.language = language
         try:
-            lesson = self._catalogue.read(name, self.language, self.say("untranslated"))
+            lesson = self.catalogue.read(name, self.language, self.say("untranslated"))
         except PlaygroundError as error:
             self.bench.notices.say(str(error))
             return False

@@ -129,7 +129,7 @@ def draw_code(
     """Draw every file that is open in the window, and the questions about those that are not saved."""
     with styled({imgui.Col_.modal_window_dim_bg: theme.colour((0.0, 0.0, 0.0), 0.45)}):
         for at, editing in enumerate(list(files.editing)):
-            if not _draw(editing, files.notices, problems, look, _place(area, at, look.scale)):
+            if not _draw(editing, files.notices, problems, look, window_place(area, at, look.scale)):
                 files.editing.remove(editing)
         if files.leaving:
             _ask_to_leave(files, quit_window)
@@ -188,7 +188,7 @@ def _view_of(editing: Editing) -> _View:
     return editing.view
 
 
-def _place(area: Area, at: int, scale: float) -> Area:
+def window_place(area: Area, at: int, scale: float) -> Area:
     """Return where the window of one of several files appears."""
     x, y, wide, high = area
     size = min(wide * 0.7, 720 * scale), min(high * _MAX_HEIGHT, 640 * scale)

@@ -50,7 +50,7 @@ class Autosave:
         self._now = now
         self.compare = compare  # what is compared with the session
         self._written: Remembered | None = None
-        self._latest: Remembered | None = None  # what was shown at the last ``look``
+        self.latest: Remembered | None = None  # what was shown at the last ``look``
         self._changed_at = 0.0
         self._written_at = now()
         self._is_reported = False
@@ -63,7 +63,7 @@ class Autosave:
     @property
     def waits(self) -> bool:
         """Whether something is still to be written."""
-        return self._latest != self._written or self._compared is not None
+        return self.latest != self._written or self._compared is not None
 
     def open(self, sketch: Path) -> None:
         """Open another sketch with what is remembered of it; the one that is shown is only read again.
@@ -72,10 +72,10 @@ class Autosave:
         """
         session, path = self.session, find(sketch).absolute()
         self.write()
-        if self._latest is not None and path == self._path:
+        if self.latest is not None and path == self._path:
             if session.drafts.opening:  # A is that of the other
                 is_on = self.compare is not None and self.compare.on
-                self._compared = None if is_on else self._latest.compared
+                self._compared = None if is_on else self.latest.compared
             session.stay()
             return
         remembered, complaint = Memory(path, self._memory.path.parent).read()
@@ -94,9 +94,9 @@ class Autosave:
             if self._recalled and isinstance(session.error, SandboxError):
                 session.notes.append(f"{program()} live --fresh opens it without your edits")
                 self._recalled = False
-            if session.shown is None or self._latest is None:
+            if session.shown is None or self.latest is None:
                 return
-            remembered = replace(self._latest, **self._drawn_of(session.shown))
+            remembered = replace(self.latest, **self._drawn_of(session.shown))
         else:
             if session.path != self._path:
                 self._switch()
@@ -104,9 +104,9 @@ class Autosave:
             if self._compared is not None and (self.compare is None or self.compare.recall(self._compared)):
                 self._compared = None
             remembered = self._snapshot(session.shown, window, at)
-        if self._latest is None or replace(remembered, time=self._latest.time) != self._latest:
+        if self.latest is None or replace(remembered, time=self.latest.time) != self.latest:
             self._changed_at = now
-        self._latest = remembered
+        self.latest = remembered
         is_moment = (
             self._written is not None and replace(remembered, time=self._written.time) == self._written
         )
@@ -116,23 +116,23 @@ class Autosave:
 
     def write(self) -> None:
         """Write what was shown last, unless another window remembers this sketch."""
-        if self._latest is None or self._latest == self._written:
+        if self.latest is None or self.latest == self._written:
             return
         self._written_at = self._now()
         try:
             if not self._memory.claim():
                 self._report("another window has this sketch open, and remembers it; this one does not")
                 return
-            self._memory.write(self._latest)
+            self._memory.write(self.latest)
         except PlaygroundError as error:
             self._report(f"your edits cannot be remembered: {error}")
             return
-        self._written = self._latest
+        self._written = self.latest
 
     def pause(self) -> None:
         """Write what is still to be written, and remember nothing until this or another sketch is shown."""
         self.write()
-        self._latest = self._written = None
+        self.latest = self._written = None
 
     def close(self) -> None:
         """Write what is still to be written, and let other windows remember."""
@@ -141,15 +141,15 @@ class Autosave:
 
     def _take_last_edits(self) -> None:
         """Take in what was edited since the last ``look``: another sketch is shown from now on."""
-        if self._latest is not None and self.session.shown is not None:
-            self._latest = replace(self._latest, **self._drawn_of(self.session.shown))
+        if self.latest is not None and self.session.shown is not None:
+            self.latest = replace(self.latest, **self._drawn_of(self.session.shown))
 
     def _switch(self) -> None:
         """Remember another sketch from now on: the one that is shown."""
         self.close()
         path = self.session.path
         self._memory, self._path = Memory(path, self._memory.path.parent), path
-        self._latest, self._written, self._is_reported = None, None, False
+        self.latest, self._written, self._is_reported = None, None, False
         if path != self._opened:  # it was opened without what is remembered of it
             self._compared = None
 

@@ -120,7 +120,7 @@ class Drafts:
         self.reads = 0  # how often what is shown was replaced by what its files say now
         self.read_changes: State = {}  # what that took from the edits last, and not the user
         self.sandboxed = checks.sandbox is not None
-        self._checks = checks
+        self.checks = checks
         self._drawn = drawn
         self._start = start or StoredEdits()
         self._techniques = TechniqueCache()
@@ -168,7 +168,7 @@ class Drafts:
     @property
     def checking(self) -> tuple[str, float] | None:
         """What the sandbox checks, a file or a technique, and for how long [s]; None if nothing."""
-        return (self._subject, self._checks.now() - self.started) if self.testing else None
+        return (self._subject, self.checks.now() - self.started) if self.testing else None
 
     @property
     def files(self) -> frozenset[Path]:
@@ -219,7 +219,7 @@ class Drafts:
             self._saved, notes = shown if is_new else None, []
         elif shown is not None:
             notes += map(str, newly_shadowed(shown.file, draft.sketch))
-        variants = self._checks.variants
+        variants = self.checks.variants
         not_run = () if old is None else omitted(old.base, variants)
         notes += [note for note in omitted(draft.base, variants) if note not in not_run]
         self._propose(notes)
@@ -312,7 +312,7 @@ class Drafts:
         self.draw_error = explained(error, self.path)
 
     def _begin(self, subject: str) -> None:
-        self.started, self._subject = self._checks.now(), subject
+        self.started, self._subject = self.checks.now(), subject
 
     def _propose(self, notes: list[str]) -> None:
         """Check what was saved together with what the user has chosen since, if there is either."""
@@ -329,11 +329,11 @@ class Drafts:
             return
         self.coming, self._coming_notes = draft, notes
         self._check_error, self.sandbox_seconds = None, 0.0
-        if self._checks.sandbox is None or not self._drawn.needs_drawing(draft.sketch):
+        if self.checks.sandbox is None or not self._drawn.needs_drawing(draft.sketch):
             self.stage = ReloadStage.DRAW
             return
         self.stage, self._aside = ReloadStage.SANDBOX, None
-        self._submit(self._checks.sandbox, draft.sketch)
+        self._submit(self.checks.sandbox, draft.sketch)
 
     def _leave_out(self, why: str, choices: Iterable[Choice]) -> None:
         """Say that choices of the user are not taken."""
@@ -350,7 +350,7 @@ class Drafts:
 
         What is coming goes first.
         """
-        sandbox = self._checks.sandbox
+        sandbox = self.checks.sandbox
         if sandbox is None:
             return SandboxReport(True)
         if self.testing:
@@ -365,7 +365,7 @@ class Drafts:
 
     def take_report(self) -> None:
         """Take in the answer of the sandbox, if one is awaited and there."""
-        report = self._checks.sandbox.poll() if self._checks.sandbox is not None else None
+        report = self.checks.sandbox.poll() if self.checks.sandbox is not None else None
         if report is None:
             return
         error = refusal(report)
@@ -375,7 +375,7 @@ class Drafts:
             self.failed(error)
 
     def _submit(self, sandbox: Sandbox, sketch: Sketch) -> None:
-        sandbox.submit(TrySketch(sketch, time=self._checks.sketch_time(), drivers=(self._checks.driver,)))
+        sandbox.submit(TrySketch(sketch, time=self.checks.sketch_time(), drivers=(self.checks.driver,)))
 
     # ── user edits ───────────────────────────────────────────────────────────
 

@@ -58,7 +58,7 @@ class Painting:
         self.session = session
         self.folder = folder  # where new masks go
         self.brush = Brush(radius=0.0)
-        self._now = now
+        self.now = now
         self._taken = False  # painting is on
         self._layers: dict[str, Layer] = {}  # by the parameter's path
         self._targets: tuple[Sketch | None, tuple[str, ...]] = (None, ())
@@ -227,7 +227,7 @@ class Painting:
             layer.begin()
             self._stroke = layer
             self._saved_at = -SAVES_EVERY
-            self._moved_at = self._now() - CLICK
+            self._moved_at = self.now() - CLICK
             self.move(position)
 
     def move(self, position: tuple[float, float]) -> None:
@@ -235,7 +235,7 @@ class Painting:
         plan, layer = self.session.plan, self.layer
         if plan is None or plan.terrain.extent is None or layer is None or layer is not self._stroke:
             return
-        now, at = self.ground(position), self._now()
+        now, at = self.ground(position), self.now()
         seconds, self._moved_at = min(at - self._moved_at, MAX_DAB_SECONDS), at
         if now is not None:
             try:

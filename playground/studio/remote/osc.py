@@ -301,9 +301,9 @@ class Osc:
             except OSError:  # on Windows also where a packet that was sent found nobody
                 continue
             if data:
-                self._put(data)
+                self.put(data)
 
-    def _put(self, data: bytes) -> None:
+    def put(self, data: bytes) -> None:
         """Keep a datagram; of a single message only its address is read here."""
         end = data.find(b"\0")
         messages: list[tuple[bytes, Datagram]] = [(data[:end], data)]

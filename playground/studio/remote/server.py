@@ -63,11 +63,11 @@ class Server:
 
     def __init__(self, port: int, token: str) -> None:
         """Listen on 127.0.0.1, on a free port where it is 0; raise ``DataError`` for one that is taken."""
-        self._socket = _listening(port)
-        self.guard = Guard(self._socket.getsockname()[1], token)
+        self.socket = _listening(port)
+        self.guard = Guard(self.socket.getsockname()[1], token)
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._run, name="the remote's server", daemon=True)
-        self._clients: set[_Client] = set()
+        self._clients: set[Client] = set()
         self._unauthenticated = Unauthenticated(self._force_close)
         self._authenticated: set[web.RequestHandler] = set()
         self._busy = 0  # requests that are being answered
@@ -100,7 +100,7 @@ class Server:
         if self._thread.is_alive() and self._ended is not None:
             self._loop.call_soon_threadsafe(self._ended.set)
             self._thread.join(5)
-        self._socket.close()
+        self.socket.close()
 
     # ── the thread ───────────────────────────────────────────────────────────
 
@@ -124,7 +124,7 @@ class Server:
             app, access_log=None, logger=_SILENT, handle_signals=False, shutdown_timeout=0.5
         )
         await self._runner.setup()
-        listener = await self._loop.create_server(self._connected, sock=self._socket, backlog=BACKLOG)
+        listener = await self._loop.create_server(self._connected, sock=self.socket, backlog=BACKLOG)
         self._started.set()
         await self._ended.wait()
         listener.close()
@@ -225,7 +225,7 @@ class Server:
     async def _events(self, request: web.Request) -> web.StreamResponse:
         if len(self._clients) >= MAX_CLIENTS:
             return _error(503, f"{MAX_CLIENTS} clients listen already")
-        client = _Client(web.WebSocketResponse(max_msg_size=MAX_REQUEST_BYTES, heartbeat=20.0))
+        client = Client(web.WebSocketResponse(max_msg_size=MAX_REQUEST_BYTES, heartbeat=20.0))
         self._clients.add(client)
         try:
             await client.socket.prepare(request)
@@ -244,7 +244,7 @@ class Server:
             self._clients.discard(client)
         return client.socket
 
-    def _begin(self, client: _Client, text: str) -> None:
+    def _begin(self, client: Client, text: str) -> None:
         """Ask for what a message says; its answer follows when the window has done it."""
         mark: object = None
         try:
@@ -262,23 +262,23 @@ class Server:
         future.add_done_callback(answer)
 
 
-class _Client:
+class Client:
     """A WebSocket, and what it is still to receive."""
 
     def __init__(self, socket: web.WebSocketResponse) -> None:
         self.socket = socket
         self.room = asyncio.Semaphore(IN_FLIGHT)
         self._answers: deque[dict[str, Any]] = deque()  # as many as messages are in flight at most
-        self._events: dict[str, dict[str, Any]] = {}  # the last of each kind
+        self.events: dict[str, dict[str, Any]] = {}  # the last of each kind
         self._news = asyncio.Event()
 
     def tell(self, events: list[dict[str, Any]]) -> None:
         """Have events sent; of those that wait, values are merged and others replaced."""
         for event in events:
-            before = self._events.get(event["event"])
+            before = self.events.get(event["event"])
             if before is not None and "values" in event:
                 event = {**event, "values": {**before["values"], **event["values"]}}
-            self._events[event["event"]] = event
+            self.events[event["event"]] = event
         self._news.set()
 
     def answer(self, mark: object, error: str) -> None:
@@ -295,7 +295,7 @@ class _Client:
         while not self.socket.closed:
             await self._news.wait()
             self._news.clear()
-            events, self._events = self._events, {}
+            events, self.events = self.events, {}
             try:
                 for event in events.values():
                     await self.socket.send_str(json.dumps(event))
