@@ -14,11 +14,11 @@ from playground.sketch.model import Sketch
 def plans_made_whole(monkeypatch: pytest.MonkeyPatch) -> list[Sketch]:
     """Return a list that grows by the sketch of each plan that is made from nothing."""
     sketches: list[Sketch] = []
-    build = planner._Planning.build
+    build = planner.Planning.build
 
-    def noted(self: planner._Planning, refused: Mapping[str, str]) -> Plan:
+    def noted(self: planner.Planning, refused: Mapping[str, str]) -> Plan:
         sketches.append(self.sketch)
         return build(self, refused)
 
-    monkeypatch.setattr(planner._Planning, "build", noted)
+    monkeypatch.setattr(planner.Planning, "build", noted)
     return sketches

@@ -264,14 +264,14 @@ def quilted(
                 total[j, i] = in_cells(part)
     strength = np.sqrt((total**2).mean(-1))
     is_placed = np.zeros((rows, columns), bool)
-    for done, (j, i) in enumerate(_order(strength)):
+    for done, (j, i) in enumerate(filling_order(strength)):
         report(done, rows * columns)
         slices = slice(j * step, j * step + side), slice(i * step, i * step + side)
         strong = min(strength[j, i], 1.0)
         fit = Fit(
             filled[slices],
             quilt.heights[slices],
-            total[j, i] if strong > _WEAK else None,
+            total[j, i] if strong > WEAK else None,
             weight * strong,
         )
         number = candidates.best(fit)
@@ -282,18 +282,18 @@ def quilted(
     return Quilt(quilt.heights[cut], quilt.east[cut], quilt.north[cut])
 
 
-_WEAK = 0.25
+WEAK = 0.25
 """Features of less than so many deviations are none."""
 
 
-def _order(strength: Field) -> Iterator[tuple[int, int]]:
+def filling_order(strength: Field) -> Iterator[tuple[int, int]]:
     """Yield all places: the strongest first, then always one beside those, the strongest of them.
 
     Of equally strong ones first that with the most beside it, then the southernmost, then the westernmost.
     Features that are strong but not beside any place begin another line before weak places are filled.
     """
     rows, columns = strength.shape
-    strong = np.where(strength > _WEAK, strength, 0.0).tolist()
+    strong = np.where(strength > WEAK, strength, 0.0).tolist()
     waiting = {(j, i) for j in range(rows) for i in range(columns)}
 
     def rank(cell: tuple[int, int]) -> tuple[float, int, int, int]:

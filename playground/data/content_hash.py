@@ -13,7 +13,7 @@ from playground.memo import FILES
 from playground.paths import shown
 
 _TICK = 50_000_000  # [ns] more than a file system's clock takes to move on
-_LARGE = 2**26  # [bytes] takes longer to read than a tick lasts
+LARGE = 2**26  # [bytes] takes longer to read than a tick lasts
 
 
 def content_key(path: Path) -> str:
@@ -27,7 +27,7 @@ def content_key(path: Path) -> str:
         stats = [require_regular(file) for file in files]
     except OSError as error:
         raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
-    if sum(stat.st_size for stat in stats) < _LARGE:
+    if sum(stat.st_size for stat in stats) < LARGE:
         return _hash_of(files)
     times = (f"{stat.st_mtime_ns} {stat.st_ctime_ns} {stat.st_size} {stat.st_ino}" for stat in stats)
     return " ".join(f"{file.suffix} {time}" for file, time in zip(files, times, strict=True))
@@ -55,15 +55,16 @@ def _own_hash(path: Path) -> str:
         stat = require_regular(path)
         # Two saves may fall into one tick of a file system's clock: what is so new is not remembered.
         is_new = abs(time.time_ns() - max(stat.st_mtime_ns, stat.st_ctime_ns)) < _TICK
-        work_out = _hash if is_new else _remembered_hash
+        work_out = file_hash if is_new else _remembered_hash
         return work_out(str(path), stat.st_mtime_ns, stat.st_ctime_ns, stat.st_size, stat.st_ino)
     except OSError as error:
         raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
 
 
-def _hash(path: str, modified: int, changed: int, size: int, inode: int) -> str:
+def file_hash(path: str, modified: int, changed: int, size: int, inode: int) -> str:
+    """Read a file and return its hash; the other arguments tell whether it has changed since."""
     with open_regular(Path(path)) as file:
         return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=16)).hexdigest()
 
 
-_remembered_hash = FILES.cached()(_hash)
+_remembered_hash = FILES.cached()(file_hash)

@@ -83,7 +83,7 @@ def triangulate(rules: Rules) -> Triangulation:
         raise DataError(f"{rules.points} points to triangulate; 0 to {MAX_POINTS} were expected")
     if not 1.0 / MAX_PROPORTION <= rules.proportion <= MAX_PROPORTION:
         raise DataError(f"sides 1 to {rules.proportion:g} to triangulate; 1 to {MAX_PROPORTION:g} at most")
-    growing = _Growing(rules)
+    growing = Growing(rules)
     for _ in range(rules.points):
         growing.insert()
     return growing.finished()
@@ -131,7 +131,7 @@ def hash3(x: int, y: int, z: int) -> tuple[int, int, int]:
     return x, y, z
 
 
-class _Growing:
+class Growing:
     """A triangulation that takes points. Triangle t has the corners and neighbours 3 t to 3 t + 2."""
 
     def __init__(self, rules: Rules) -> None:
@@ -154,7 +154,7 @@ class _Growing:
         rules = self.rules
         triangle, area = self._take_greatest()
         point = len(self.x)
-        x, y = self._barycentre(triangle, point)
+        x, y = self.barycentre(triangle, point)
         self.heights.append(self._height(triangle, area, point, x, y))
         self.x.append(x)
         self.y.append(y)
@@ -167,7 +167,7 @@ class _Growing:
 
     def finished(self) -> Triangulation:
         """Return what has grown, its triangles from the greatest on."""
-        triples = [self._triple(t) for t in range(len(self.corners) // 3)]
+        triples = [self.triple(t) for t in range(len(self.corners) // 3)]
         order = sorted(range(len(triples)), key=lambda t: (-self._area(t), triples[t]))
         index_of = {t: k for k, t in enumerate(order)} | {_OUTSIDE: _OUTSIDE}
         neighbours = []
@@ -193,15 +193,15 @@ class _Growing:
         """
         while True:
             area, triple, triangle = heapq.heappop(self.greatest)
-            if self._triple(triangle) == triple:
+            if self.triple(triangle) == triple:
                 return triangle, -area
 
     def _rank(self, triangles: Iterable[int]) -> None:
         """Put triangles into the heap: by area, then by their points, so that numbering does not count."""
         for t in triangles:
-            heapq.heappush(self.greatest, (-self._area(t), self._triple(t), t))
+            heapq.heappush(self.greatest, (-self._area(t), self.triple(t), t))
 
-    def _barycentre(self, triangle: int, point: int) -> tuple[int, int]:
+    def barycentre(self, triangle: int, point: int) -> tuple[int, int]:
         """Return the lattice point nearest to a triangle's barycentre, its corners weighed."""
         weights = (1, 1, 1)
         if self.rules.random_weights:  # none below 64/702 of the whole
@@ -209,7 +209,7 @@ class _Growing:
             weights = (64 + (a >> 24), 64 + (b >> 24), 64 + (c >> 24))
         whole = sum(weights)
         # In the order that does not depend on how the triangle is stored.
-        corners = self._triple(triangle)
+        corners = self.triple(triangle)
         x = sum(w * self.x[c] for w, c in zip(weights, corners, strict=True))
         y = sum(w * self.y[c] for w, c in zip(weights, corners, strict=True))
         return (2 * x + whole) // (2 * whole), (2 * y + whole) // (2 * whole)
@@ -221,7 +221,7 @@ class _Growing:
         number = (self._drawn(point, 0)[0] >> 8) / 2**24
         if not self.rules.displaced:
             return number
-        a, b, c = self._triple(triangle)
+        a, b, c = self.triple(triangle)
         height = 0.0
         for v, (p, q) in ((a, (b, c)), (b, (c, a)), (c, (a, b))):
             part = (self.x[p] - x) * (self.y[q] - y) - (self.x[q] - x) * (self.y[p] - y)
@@ -341,7 +341,7 @@ class _Growing:
     def _opposite(self, t: int, u: int, v: int) -> int:
         return self.corners[3 * t + self._place_of(t, u, v)]
 
-    def _triple(self, t: int) -> tuple[int, int, int]:
+    def triple(self, t: int) -> tuple[int, int, int]:
         """Return a triangle's points, counter-clockwise, the one that came first in front."""
         a, b, c = self.corners[3 * t : 3 * t + 3]
         if b < a and b < c:

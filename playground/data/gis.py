@@ -72,7 +72,7 @@ _EXPECTED = {
     "its corner, as N36W085.hgt",
 }
 _HEIGHTS = ("elevation", "z", "height", "altitude", "topo", "dem", "band1", "band_data")  # names of variables
-_BAND = 2**22  # [texels] that are read at a time
+BAND = 2**22  # [texels] that are read at a time
 _ESRI_NO_DATA = -9999.0  # where an .asc or .flt does not say
 _SOURCES = re.compile(rb"II[*+]\0|MM\0[*+]|EHFA_HEADER_TAG\0|\0\0\0\x0cjP  \r\n\x87\n")
 _VRT_TAGS = frozenset(
@@ -119,7 +119,7 @@ class GdalRows:
         from rasterio.windows import Window
 
         rows, cols = self.shape
-        count = max(_BAND // (cols * self.block_rows), 1) * self.block_rows
+        count = max(BAND // (cols * self.block_rows), 1) * self.block_rows
         with _explained(self.path):
             raster = _open(self.name, self.driver, self.overview)
         with raster:

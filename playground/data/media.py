@@ -158,7 +158,7 @@ class Film:
         self._container: av.container.InputContainer | None = None
         self._last = -1  # the frame decoded last
         self._latest: Any = None
-        self._held: Memo[int, Any] = Memo(f"frames of {path.name}", 0, "bytes")
+        self.held: Memo[int, Any] = Memo(f"frames of {path.name}", 0, "bytes")
 
     @property
     def duration(self) -> float:
@@ -190,7 +190,7 @@ class Film:
 
         To a smaller size it is averaged over areas, to a larger one interpolated bilinearly.
         """
-        frame = self._held.get(number)
+        frame = self.held.get(number)
         if frame is None:
             frame = self._decoded(number)
             self._hold(number, frame)
@@ -232,10 +232,10 @@ class Film:
         if self._container is not None:
             self._container.close()
         self._container = self._open()
-        self._frames = self._numbered(self._container, key)
+        self._frames = self.numbered_frames(self._container, key)
         self._last, self._latest = -1, None
 
-    def _numbered(self, container: av.container.InputContainer, key: int) -> Iterator[tuple[int, Any]]:
+    def numbered_frames(self, container: av.container.InputContainer, key: int) -> Iterator[tuple[int, Any]]:
         """Yield frames with their numbers, from a key frame on."""
         stamps = self._index.stamps
         stream = decodable(container.streams.video, "picture", self.path)
@@ -252,8 +252,8 @@ class Film:
 
     def _hold(self, number: int, frame: Any) -> None:
         size = frame.width * frame.height * 4
-        self._held.bound = max(_HELD_BYTES, 2 * size)
-        self._held.put(number, frame, size)
+        self.held.bound = max(_HELD_BYTES, 2 * size)
+        self.held.put(number, frame, size)
 
     def _open(self) -> av.container.InputContainer:
         container = open_media(self.path, _VIDEO, VIDEO_FILES)
@@ -329,7 +329,7 @@ def film_of(path: Path) -> Film:
 RATE = 44_100  # [Hz]
 _SOUND = "a sound file"
 _WEIGHT = 2**26  # [bytes] of an open sound, about: it is decoded as far as it was heard
-_MAX_BYTES = ALWAYS_FINE  # of samples: 25 minutes in stereo
+MAX_BYTES = ALWAYS_FINE  # of samples: 25 minutes in stereo
 
 
 class Sound:
@@ -401,8 +401,8 @@ class Sound:
         return container
 
     def _judge(self, count: int) -> None:
-        if count * self.channels * 4 > _MAX_BYTES:
-            most = _MAX_BYTES // (self.channels * 4 * RATE * 60)
+        if count * self.channels * 4 > MAX_BYTES:
+            most = MAX_BYTES // (self.channels * 4 * RATE * 60)
             raise DataError(
                 f"{count / RATE / 60:.0f} minutes of sound are too many; the limit is {most}", file=self.path
             )

@@ -193,7 +193,7 @@ def _crs_of(document: dict[str, Any], path: Path) -> str:
 def _by_ogr(path: Path, ending: str) -> Vectors:
     if find_spec("pyogrio") is None:
         raise DataError(needs(f"{ending} is read by OGR, which", "pyogrio", "gis"), file=path)
-    if not _is_what_it_says(path, ending):
+    if not matches_ending(path, ending):
         raise DataError(f"is no {ending[1:]} file, although its name ends like one", file=path)
     import pyogrio
     from pyogrio.errors import DataLayerError, DataSourceError
@@ -218,7 +218,7 @@ def _by_ogr(path: Path, ending: str) -> Vectors:
     return Vectors(tuple(result), systems[0] if systems else "", notes if same < len(systems) else ())
 
 
-def _is_what_it_says(path: Path, ending: str) -> bool:
+def matches_ending(path: Path, ending: str) -> bool:
     """Return whether a file's first bytes, or the first element of its XML, are those of its ending.
 
     OGR goes by what a file holds, not by its name.

@@ -196,7 +196,7 @@ class Binder:
         """Return the sampler that reads textures so: the same for samplings that are equal."""
         sampler = self._samplers.get(sampling)
         if sampler is None:
-            sampler = self._samplers[sampling] = self._new_sampler(sampling)
+            sampler = self._samplers[sampling] = self.new_sampler(sampling)
             self._put_back()
         return sampler
 
@@ -252,7 +252,8 @@ class Binder:
                 source.release()
         return self._shaped[name, shape]
 
-    def _new_sampler(self, sampling: Sampling) -> moderngl.Sampler:
+    def new_sampler(self, sampling: Sampling) -> moderngl.Sampler:
+        """Create a sampler: anisotropic where mipmaps are filtered linearly."""
         linear, around = sampling.filter == "linear", sampling.wrap in ("repeat", "mirror")
         shrink = self.ctx.LINEAR if linear else self.ctx.NEAREST
         if sampling.mipmap:

@@ -93,7 +93,7 @@ class Cache:
         self._cached[key] = cached
         self._in_use.add(key)
         self._may_grow.add(key)
-        self._weigh(key)
+        self.weigh(key)
         if len(cached.results) == 1 and not cached.iterations:
             ((path, result),) = cached.results.items()
             versions = cached.versions = self._versions.setdefault((path, result.size), OrderedDict())
@@ -107,7 +107,7 @@ class Cache:
 
     def grew(self, key: str) -> None:
         """Weigh what has grown; what is over the bounds goes."""
-        self._weigh(key)
+        self.weigh(key)
         self.trim()
 
     def note_progress(self, path: str, unfinished: str, key: str, iterations: int) -> None:
@@ -135,14 +135,14 @@ class Cache:
         if cached.versions is not None:
             del cached.versions[key]
         self._in_use.discard(key)
-        self._weigh(key)
+        self.weigh(key)
         return result
 
     def drop(self, key: str) -> None:
         """Forget something."""
         cached = self._cached.pop(key, None)
         self._in_use.discard(key)
-        self._weigh(key)
+        self.weigh(key)
         if cached is not None:
             if cached.versions is not None:
                 del cached.versions[key]
@@ -199,10 +199,10 @@ class Cache:
     def _weigh_used(self) -> None:
         """Weigh what was used since the last time: mipmaps may have been made."""
         for key in self._may_grow:
-            self._weigh(key)
+            self.weigh(key)
         self._may_grow.clear()
 
-    def _weigh(self, key: str) -> None:
+    def weigh(self, key: str) -> None:
         """Add what one key holds now to the total."""
         cached = self._cached.get(key)
         now, before = cached.bytes if cached is not None else 0, self._sizes.get(key, 0)

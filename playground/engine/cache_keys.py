@@ -112,7 +112,7 @@ class KeyMaker:
         """
         last = self._last
         keys = last.copy() if last is not None and last.is_like(plan) else _PlanKeys(plan)
-        computation = _KeyComputation(self.text_of, self._content, driver, uniforms_of, keys)
+        computation = KeyComputation(self.text_of, self._content, driver, uniforms_of, keys)
         waiting = keys.possibly_stale(plan.nodes)  # places of nodes, the first on top
         queued, stale = set(waiting), set[int]()
         while waiting:
@@ -218,7 +218,7 @@ class _NodeKeys(NamedTuple):
     steps: Mapping[int, _CachedKey]  # by the step's identity
     moving: tuple[Step, ...]  # steps that the same plan may give something else in the next frame
     uniforms: str  # what they were given
-    shown: list[tuple[str, frozenset[str]]]  # what the nodes that read it see of it: see ``_KeyComputation``
+    shown: list[tuple[str, frozenset[str]]]  # what the nodes that read it see of it: see ``KeyComputation``
 
 
 class _PlanKeys:
@@ -276,7 +276,7 @@ def _readers(nodes: Sequence[PlanNode]) -> list[frozenset[int]]:
     return [frozenset(places) for places in readers]
 
 
-class _KeyComputation:
+class KeyComputation:
     """Computes keys of nodes of one plan, into ``keys``."""
 
     def __init__(

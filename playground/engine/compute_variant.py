@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _BYTES = {"vec2": 8, "ivec2": 8, "uvec2": 8, "vec4": 16, "ivec4": 16, "uvec4": 16}
 _MAX_BUFFER = 2**31 - 1
 _MAX_SPARE_RATIO = 1.25  # of the bytes needed: those that passes of one size ask for differ a little
-_RECENT = 32  # runs: those of one picture, of a sketch with many
+RECENT = 32  # runs: those of one picture, of a sketch with many
 _MAX_ALIGNMENT = 8  # bytes, of those that OpenGL fills rows up to
 _UNPACK_ROW_LENGTH, _PACK_ROW_LENGTH = 0x0CF2, 0x0D02  # GL's, in texels; 0: the texture's own
 
@@ -52,14 +52,14 @@ class ComputeVariants:
     def __init__(self, ctx: moderngl.Context, kernels: Kernels) -> None:
         self.ctx = ctx
         self.kernels = kernels
-        self._spare: list[Spare] = []  # newest last
+        self.spare: list[Spare] = []  # newest last
         self._runs = 0
 
     def release(self) -> None:
         """Release every spare buffer."""
-        for spare in self._spare:
+        for spare in self.spare:
             spare.buffer.release()
-        self._spare.clear()
+        self.spare.clear()
 
     def run(
         self,
@@ -129,7 +129,7 @@ class ComputeVariants:
             raise
         finally:
             self._runs += 1
-            self._spare += [Spare(buffer, self._runs) for buffer in buffers]
+            self.spare += [Spare(buffer, self._runs) for buffer in buffers]
             self._trim()
         return result
 
@@ -139,10 +139,10 @@ class ComputeVariants:
         if size > _MAX_BUFFER:
             message = f"buffer '{declared.name}' would be {size / 2**20:.0f} MiB; 2048 at most"
             raise kernel.error(f"pass '{step.path}': {message}")
-        fitting = [spare for spare in self._spare if size <= spare.buffer.size <= size * _MAX_SPARE_RATIO]
+        fitting = [spare for spare in self.spare if size <= spare.buffer.size <= size * _MAX_SPARE_RATIO]
         if fitting:
             taken = min(reversed(fitting), key=_bytes)
-            self._spare.remove(taken)
+            self.spare.remove(taken)
             buffer = taken.buffer
         else:
             buffer = self.ctx.buffer(reserve=size)
@@ -209,15 +209,15 @@ class ComputeVariants:
 
         Those of the last run stay, and the largest of the others, as long as runs need it again and again.
         """
-        older = [spare for spare in self._spare if spare.run < self._runs]
-        recent = [spare for spare in older if spare.run > self._runs - _RECENT]
+        older = [spare for spare in self.spare if spare.run < self._runs]
+        recent = [spare for spare in older if spare.run > self._runs - RECENT]
         largest = max(recent, key=_bytes, default=None)
-        held = sum([spare.buffer.size for spare in self._spare])
+        held = sum([spare.buffer.size for spare in self.spare])
         for spare in older:
             if held <= self.kernels.pool.limit:
                 return
             if spare is not largest:
-                self._spare.remove(spare)
+                self.spare.remove(spare)
                 held -= spare.buffer.size
                 spare.buffer.release()
 

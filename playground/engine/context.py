@@ -121,7 +121,7 @@ def _open(device: int | None = None, environment: Mapping[str, str] | None = Non
         # The names with a version need no -dev package. To be found by another, each takes a process of
         # ldconfig, and without that nothing is found.
         names = {"libegl": "libEGL.so.1", "libgl": "libGL.so.1"}
-        if all(map(_loads, names.values())) or not ctypes.util.find_library("EGL"):
+        if all(map(is_loadable, names.values())) or not ctypes.util.find_library("EGL"):
             options |= names
     elif device is not None:
         raise ContextError("--device picks an EGL device, which only Linux has")
@@ -143,7 +143,7 @@ def _open(device: int | None = None, environment: Mapping[str, str] | None = Non
     raise ContextError(f"{advice(cause, sys.platform, theirs)} ({cause})")
 
 
-def _loads(library: str) -> bool:
+def is_loadable(library: str) -> bool:
     """Return whether a library can be loaded; it stays so, for what opens a context loads it next."""
     try:
         ctypes.CDLL(library)

@@ -116,11 +116,11 @@ class DiskCache:
         self._thread: threading.Thread | None = None
 
     def __contains__(self, key: str) -> bool:
-        return self._path(key).exists()
+        return self.path_of(key).exists()
 
     def read(self, key: str) -> CachedTextures | None:
         """Return what is cached under a key, checked, and mark it as used; None if there is nothing."""
-        path = self._path(key)
+        path = self.path_of(key)
         try:
             with path.open("rb") as file:
                 textures = _read(file, key)
@@ -151,14 +151,15 @@ class DiskCache:
             self._thread.join(patience)
             self._thread = None
 
-    def _path(self, key: str) -> Path:
+    def path_of(self, key: str) -> Path:
+        """Return the file of a key, whether it exists or not."""
         name = hashlib.blake2b(f"{self._made_by} {key}".encode(), digest_size=16).hexdigest()
         return self.folder / f"{name}{_ENDING}"
 
     def _write_all(self) -> None:
         while (work := self._waiting.get()) is not None:
             key, textures = work
-            path = self._path(key)
+            path = self.path_of(key)
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)
                 with replacing(path) as file:

@@ -81,9 +81,9 @@ class DiskCaching:
         self.reads = 0  # textures of passes read so far
         self._now = now
         # [ms] by the key of the step or the loop
-        self._costs: Memo[str, float] = Memo("costs of results", _MAX_COSTS)
+        self.costs: Memo[str, float] = Memo("costs of results", _MAX_COSTS)
         self._costed_at = 0.0
-        self._is_new = False  # something was computed since the last look
+        self.pending = False  # something was computed since the last look
         self._work: Iterator[None] | None = None
 
     @property
@@ -134,7 +134,7 @@ class DiskCaching:
         start = self._now()
         yield
         wait()
-        self._costed_at, self._is_new = self._now(), True
+        self._costed_at, self.pending = self._now(), True
         self._note(key, (self._costed_at - start + before()) * 1e3)
 
     def _take(self, execution: Execution, step: Step, key: str) -> bool:
@@ -157,7 +157,7 @@ class DiskCaching:
         return True
 
     def _note(self, key: str, cost: float) -> None:
-        self._costs.put(key, cost)
+        self.costs.put(key, cost)
 
     # ── at rest ──────────────────────────────────────────────────────────────
 
@@ -172,12 +172,12 @@ class DiskCaching:
             if not ended:
                 return 0.0
             self._work = None
-        if not self._is_new:
+        if not self.pending:
             return None
         left = self._costed_at + self.rest - self._now()
         if left > 0:
             return left
-        self._is_new = False
+        self.pending = False
         if source.record.plan is not plan:  # a texture was read since
             source.recall(plan)
         self._work = self._write_all(source, plan, source.record.keys)
@@ -197,13 +197,13 @@ class DiskCaching:
 
     def _write_all(self, source: FrameSource, plan: Plan, keys: Keys) -> Iterator[None]:
         """Write what is worth it, a piece at a time; ends early where a texture is gone."""
-        passes, costs = passing(plan, source.runner.painted), self._costs
+        passes, costs = passing(plan, source.runner.painted), self.costs
         mipmaps = source.runner.tuning.mipmap_cost
         more = {path: mipmaps for path, result in source.record.results.items() if result.mipmapped}
         for worth in worth_caching(plan, keys, plan.picture, passes, costs, read_time, self.floor, more):
             step = source.record.keys.steps.get(worth.path)
             if step is None or step.result != worth.key:
-                self._is_new = True  # another sketch was drawn since
+                self.pending = True  # another sketch was drawn since
                 return
             result = source.record.results.get(worth.path)
             if result is None or worth.key in self.store:
@@ -219,7 +219,7 @@ class DiskCaching:
                 whole, at = bytearray(cached.bytes_of_output(name, form)), 0
                 for level, south, north in _pieces(result.size, form, mipmapped=name in mipmapped):
                     if source.record.results.get(worth.path) is not result:
-                        self._is_new = True  # another frame was made, and the texture may be another's by now
+                        self.pending = True  # another frame was made, and the texture may be another's by now
                         return
                     part = _read_piece(result.textures[name], level, south, north)
                     whole[at : at + len(part)] = part

@@ -47,7 +47,7 @@ class Draws:
         self.ctx = ctx
         self.kernels = kernels
         self.finest: int | None = None  # no mesh is finer than this
-        self._meshes: Memo[_MeshKey, _Loaded] = Memo("meshes", _MAX_MESHES, dropped=self._release_mesh)
+        self.meshes: Memo[_MeshKey, _Loaded] = Memo("meshes", _MAX_MESHES, dropped=self._release_mesh)
         self._surfaces: list[Surface] = []  # spare, newest last
         limits = ctx.info["GL_MAX_VIEWPORT_DIMS"]
         self.widest: tuple[int, int] = (int(limits[0]), int(limits[1]))  # [pixels] of a viewport
@@ -56,7 +56,7 @@ class Draws:
 
     def release(self) -> None:
         """Release every mesh and surface."""
-        self._meshes.clear()
+        self.meshes.clear()
         for surface in self._surfaces:
             surface.release()
         self._surfaces.clear()
@@ -270,7 +270,7 @@ class Draws:
             raise step.spec.error(str(error)) from None
         if self.finest is not None:
             key = key[0], tuple((name, min(value, self.finest)) for name, value in key[1])
-        mesh: _Loaded = self._meshes.get(key) or self._meshes.put(key, _Loaded(self.ctx, key))
+        mesh: _Loaded = self.meshes.get(key) or self.meshes.put(key, _Loaded(self.ctx, key))
         array = program.arrays.get(key)
         if array is None:
             array = program.arrays[key] = mesh.array(program)

@@ -68,7 +68,7 @@ class EyeHeight:
             return None
         key = (result.number, *position)
         if self._read is None or self._read[0] != key:
-            self._read = key, _height_at(position, result, source.output, ctx)
+            self._read = key, height_at(position, result, source.output, ctx)
         self._terrain_key = keys.result(source.path)
         return self._over(plan, position, self._read[1])
 
@@ -105,7 +105,7 @@ def _terrain_of(plan: Plan) -> Ref | None:
     return None
 
 
-def _height_at(share: tuple[float, float], result: Result, output: str, ctx: moderngl.Context) -> float:
+def height_at(share: tuple[float, float], result: Result, output: str, ctx: moderngl.Context) -> float:
     """Return the height between the four texels around a place."""
     texel = np.array(share) * (np.array(result.size) - 1)
     low = np.minimum(texel.astype(int), np.maximum(np.array(result.size) - 2, 0))

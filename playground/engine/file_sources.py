@@ -101,7 +101,7 @@ def make(
         else:
             heights = np.zeros_like(elevation.heights)
         if math.prod(made) > KEPT:
-            SOURCES.drop_of(_whole)
+            SOURCES.drop_of(read_whole)
             SOURCES.drop_of(_large)
         del elevation
         if size != made:
@@ -175,11 +175,12 @@ def _facts_of(request: ElevationRequest, size: tuple[int, int]) -> _ElevationFac
 def _at(request: ElevationRequest, size: tuple[int, int]) -> Elevation:
     """Return all heights of a file; of a large one, those of a size."""
     with _memory_explained(Path(request[0])):
-        return _large(request, size) if math.prod(_opened(request).size) > LARGE else _whole(request)
+        return _large(request, size) if math.prod(_opened(request).size) > LARGE else read_whole(request)
 
 
 @SOURCES.cached(weight=bytes_held)
-def _whole(request: ElevationRequest) -> Elevation:
+def read_whole(request: ElevationRequest) -> Elevation:
+    """Read all heights, with no-data texels filled."""
     return fill_no_data(_opened(request).read(), request[4])
 
 
@@ -425,7 +426,7 @@ _EXAMPLE_SALT = crc32(b"generation/from_example")
 def describe_example(values: Mapping[str, Value]) -> Terrain:
     """Return the example's relief, where it is known: what is made of it has about the same."""
     low, rise = _metres_of_example(values)
-    assumed = "" if low is None else _example(values)[0].assumed
+    assumed = "" if low is None else example_of(values)[0].assumed
     return Terrain(relief=rise, base_elevation=low, assumed=assumed)
 
 
@@ -433,7 +434,7 @@ def make_from_example(
     values: Mapping[str, Value], size: tuple[int, int], material: Material
 ) -> dict[str, NDArray[np.float32]]:
     """Return heights in units of the relief, the lowest 0."""
-    (example, coarser), (_, rise) = _example(values), _metres_of_example(values)
+    (example, coarser), (_, rise) = example_of(values), _metres_of_example(values)
     span = example.highest - example.lowest
     texel = number_of(values, "texel")
     spacing = (texel * coarser, texel * coarser) if texel else example.spacing
@@ -459,7 +460,7 @@ def make_from_example(
 
 def example_notes(values: Mapping[str, Value]) -> tuple[str, ...]:
     """Return what was assumed of the example."""
-    example, _ = _example(values)
+    example, _ = example_of(values)
     facts = [f"{example.name}: {note}" for note in example.notes]
     if example.spacing is None and not number_of(values, "texel"):
         facts.append(f"{example.name}: it does not say how large it is, so its texels are this terrain's")
@@ -468,7 +469,7 @@ def example_notes(values: Mapping[str, Value]) -> tuple[str, ...]:
 
 def _metres_of_example(values: Mapping[str, Value]) -> tuple[float | None, float | None]:
     """Return the elevation of the example's lowest height, and how far it rises [m]; None: not known."""
-    (example, _), rise = _example(values), number_of(values, "rise")
+    (example, _), rise = example_of(values), number_of(values, "rise")
     if rise:
         return None, rise
     if example.in_metres and example.highest > example.lowest:
@@ -476,7 +477,7 @@ def _metres_of_example(values: Mapping[str, Value]) -> tuple[float | None, float
     return None, None
 
 
-def _example(values: Mapping[str, Value]) -> tuple[Elevation, float]:
+def example_of(values: Mapping[str, Value]) -> tuple[Elevation, float]:
     """Return the example, and how many of the file's texels go to one of it."""
     path = Path(str(values["elevation"]))
     return _read_example(str(path), content_key(path))

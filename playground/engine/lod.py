@@ -61,7 +61,7 @@ def vertices() -> NDArray[np.float32]:
     steps = np.arange(CELLS + 1)
     north, east = np.meshgrid(steps, steps, indexing="ij")
     top = np.stack([east.ravel(), north.ravel(), np.zeros(east.size)], axis=1)
-    foot = top[np.concatenate([_side(side, 1) for side in SIDES])]
+    foot = top[np.concatenate([edge_nodes(side, 1) for side in SIDES])]
     foot[:, 2] = 1.0
     return np.concatenate([top, foot]).astype(np.float32)
 
@@ -73,8 +73,8 @@ def pieces() -> Mapping[Piece, NDArray[np.uint32]]:
     for level in range(LEVELS - 1):
         for coarser in range(16):
             indices["fans", level, coarser] = _fans(level, coarser)
-    south_west, south_east = _side(SOUTH, CELLS)
-    north_east, north_west = _side(NORTH, CELLS)
+    south_west, south_east = edge_nodes(SOUTH, CELLS)
+    north_east, north_west = edge_nodes(NORTH, CELLS)
     cut = [south_west, south_east, north_east, south_west, north_east, north_west]
     indices["fans", LEVELS - 1, 0] = np.array(cut, np.uint32)
     cut = [south_west, south_east, north_west, south_east, north_east, north_west]
@@ -98,7 +98,7 @@ def ranges() -> Mapping[Piece, tuple[int, int]]:
     return ranges_by_piece
 
 
-def _side(side: int, step: int) -> NDArray[np.int64]:
+def edge_nodes(side: int, step: int) -> NDArray[np.int64]:
     """Return every so many nodes of a side, in the order in which the tile is to their left."""
     along = np.arange(0, CELLS + 1, step)
     nodes = along if side in (SOUTH, NORTH) else along * _ROW
@@ -130,7 +130,7 @@ def _fans(level: int, coarser: int, quarter: tuple[int, int] | None = None) -> N
 def _wall(level: int, side: int) -> NDArray[np.uint32]:
     """Return the wall from a side down to its feet."""
     step = 1 << level
-    top, foot = _side(side, step), _ROW**2 + SIDES.index(side) * _ROW + np.arange(0, CELLS + 1, step)
+    top, foot = edge_nodes(side, step), _ROW**2 + SIDES.index(side) * _ROW + np.arange(0, CELLS + 1, step)
     quads = [top[:-1], foot[:-1], foot[1:], top[:-1], foot[1:], top[1:]]
     return np.stack(quads, axis=1).ravel().astype(np.uint32)
 

@@ -129,17 +129,17 @@ def _made(sketch: Sketch, request: PlanRequest, last: Plan | None) -> Plan:
         now = last.flat  # most frames set no value
         if sketch.overrides is not last.sketch.overrides:
             now = flat(last.basis.refusals)
-        updated_plan = _Planning(sketch, now, request, varies, last=last).updated_plan()
+        updated_plan = Planning(sketch, now, request, varies, last=last).updated_plan()
         if updated_plan is not None:
             return updated_plan
-    making, refused = _Planning(sketch, flat(()), request, varies), dict[str, str]()
+    making, refused = Planning(sketch, flat(()), request, varies), dict[str, str]()
     while more := making.refusals(refused):
         refused |= more
-        making = _Planning(sketch, flat(refused), request, varies, after=making)
+        making = Planning(sketch, flat(refused), request, varies, after=making)
     return making.build(refused)
 
 
-class _Planning:
+class Planning:
     """One plan being made.
 
     ``varies``: keyframes set parameters; ``last`` is the last plan of the same graph, made for the same
@@ -154,7 +154,7 @@ class _Planning:
         request: PlanRequest,
         varies: bool,
         last: Plan | None = None,
-        after: _Planning | None = None,
+        after: Planning | None = None,
     ) -> None:
         self.sketch = sketch
         self.flat = flat
@@ -246,7 +246,7 @@ class _Planning:
         for leaf in self.flat.leaves:
             if leaf.spec.size is None:
                 self._refuse(leaf, self._size_of_leaf(leaf))
-        nodes = tuple(self._node(node) for node in self.flat.nodes)
+        nodes = tuple(self.plan_node(node) for node in self.flat.nodes)
         self._check_stops()
         lacking = tuple(
             f"{path or 'the sketch'} does without compute shaders, which are not here: "
@@ -298,7 +298,8 @@ class _Planning:
         assert extent is not None and relief is not None
         return look(self.sketch.camera, extent, relief, self.request.frame_size)
 
-    def _node(self, node: Node) -> PlanNode:
+    def plan_node(self, node: Node) -> PlanNode:
+        """Plan a pass or a loop."""
         if isinstance(node, Loop):
             total = self.sizes.count_of(node.path)
             run = self._stopped(node.path, total, node.repeat)
@@ -334,7 +335,7 @@ class _Planning:
 
     def _body(self, nodes: tuple[Node, ...]) -> tuple[PlanNode, ...]:
         """Return what an iteration of a loop runs: the very same where another runs the same."""
-        body = tuple([self._node(node) for node in nodes])
+        body = tuple([self.plan_node(node) for node in nodes])
         return self._bodies.setdefault(tuple(map(id, body)), body)
 
     def _note_names(self, leaf: Leaf) -> None:

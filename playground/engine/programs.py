@@ -155,11 +155,11 @@ class Programs:
 
     def __init__(self, ctx: moderngl.Context, tuning: Tuning) -> None:
         self.ctx = ctx
-        self._write = tuning.write
+        self.write = tuning.write
         self.compile_times: dict[str, float] = {}  # [ms] of each program compiled, by file
         self.compiled = 0  # how many programs were compiled
         self.frame = 0  # frames begun: programs of the current one stay
-        self._by_text: Memo[tuple[str, ...], Program] = Memo(
+        self.by_text: Memo[tuple[str, ...], Program] = Memo(
             "programs",
             _SPARE,
             dropped=lambda _, program: program.release(),
@@ -167,15 +167,15 @@ class Programs:
         )
 
     def __len__(self) -> int:
-        return len(self._by_text)
+        return len(self.by_text)
 
     def get(self, kernel: Kernel, driver: str, choices: Choices = ()) -> Program:
         """Return the program of a kernel, with what is chosen written into its text.
 
         Raises ``ShaderError`` where its text is wrong.
         """
-        plain, wrapped, text = _wrapped(kernel, driver, self.ctx.version_code, choices, self._write)
-        if text not in self._by_text:
+        plain, wrapped, text = _wrapped(kernel, driver, self.ctx.version_code, choices, self.write)
+        if text not in self.by_text:
             start = time.perf_counter()
             self._keep(text, self._compiled(plain, wrapped, choices))
             self.compile_times[kernel.path] = milliseconds = (time.perf_counter() - start) * 1e3
@@ -190,7 +190,7 @@ class Programs:
         try:
             return compile_wrapped(self.ctx, wrapped)
         except ShaderError:
-            as_written = self._write(plain, choices, plainly=True)
+            as_written = self.write(plain, choices, plainly=True)
             if _texts(as_written) == _texts(wrapped):
                 raise
             program = compile_wrapped(self.ctx, as_written)
@@ -201,29 +201,29 @@ class Programs:
     def own(self, fragment: str) -> Program:
         """Return the program of a fragment shader of the engine's own."""
         text = (TRIANGLE, fragment)
-        if text not in self._by_text:
+        if text not in self.by_text:
             self._keep(text, self.ctx.program(vertex_shader=TRIANGLE, fragment_shader=fragment))
         return self._used(text)
 
     def forget_mesh(self, mesh: object) -> None:
         """Release every vertex array made for a mesh."""
-        for program in self._by_text.values():
+        for program in self.by_text.values():
             array = program.arrays.pop(mesh, None)
             if array is not None:
                 array.release()
 
     def release(self) -> None:
         """Release every program."""
-        self._by_text.clear()
+        self.by_text.clear()
 
     def _used(self, text: tuple[str, ...]) -> Program:
-        program: Program = self._by_text.get(text)
+        program: Program = self.by_text.get(text)
         program.frame = self.frame
         return program
 
     def _keep(self, text: tuple[str, ...], compiled: Any) -> None:
         self.compiled += 1
-        self._by_text.put(text, Program(self.ctx, compiled))
+        self.by_text.put(text, Program(self.ctx, compiled))
 
 
 @GRAPHS.cached(identities=1)

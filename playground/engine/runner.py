@@ -127,7 +127,7 @@ class Runner:
             names = (p.name for p in kernel.parameters if p.widget.kind == "button")
             uniforms |= {f"{PRESSED}{name}": True for name in names if f"{step.path}.{name}" in self.pressed}
         if isinstance(kernel, PlainShader):
-            return uniforms | dict(usual_of(kernel, self._usual(step, frame)))
+            return uniforms | dict(usual_of(kernel, self.frame_uniforms(step, frame)))
         for name in kernel.engine_uniforms:
             if name == "spacing":
                 uniforms[name] = self._spacing(step)
@@ -211,7 +211,7 @@ class Runner:
                     return self.compute_variants.run(step, inputs, uniforms, around)
                 case CpuSource():
                     return self._source(step, inputs, uniforms, key)
-            return self.kernels.plain(step, inputs, uniforms, around, self._usual(step, frame))
+            return self.kernels.plain(step, inputs, uniforms, around, self.frame_uniforms(step, frame))
 
     def _given_now(self, step: Step, around: LoopIteration | None) -> dict[str, Any]:
         """Return what the engine gives a kernel in this frame: the very same in every iteration, if it is."""
@@ -305,7 +305,8 @@ class Runner:
             return None
         return painted if split_format(outputs[0].format)[0] == channels_of(painted) else None
 
-    def _usual(self, step: Step, frame: int | None) -> dict[str, tuple[float, ...]]:
+    def frame_uniforms(self, step: Step, frame: int | None) -> dict[str, tuple[float, ...]]:
+        """Return the values of the uniforms that the window or the frame sets, by name."""
         width, height = step.full_size
         time = self._time_at(frame)
         return {

@@ -109,16 +109,16 @@ class Software(Tuning):
         self.filling = Filling(ctx)
         self._call = Calls(ctx)
         self._depths: dict[tuple[int, int], moderngl.Renderbuffer] = {}  # where a kernel is done, by size
-        self._textures: list[ctypes.c_uint] = []  # that are buffers, by number of the buffer that is read
+        self.buffer_textures: list[ctypes.c_uint] = []  # by number of the buffer that is read
 
     def release(self) -> None:
         """Release depth buffers, and the textures that are buffers, not the buffers."""
         for depth in self._depths.values():
             depth.release()
         self._depths.clear()
-        for name in self._textures:
+        for name in self.buffer_textures:
             self._call("glDeleteTextures", (ctypes.c_int, ctypes.c_void_p), 1, ctypes.addressof(name))
-        self._textures.clear()
+        self.buffer_textures.clear()
 
     def stage(self, step: Step, inputs: Mapping[str, Wired], driver: str, *, in_loop: bool) -> Stage:
         """Return how a step runs: what is known of it is constant, and read in the quickest way."""
@@ -206,21 +206,21 @@ class Software(Tuning):
         if not read or longest > self.max_texels:
             yield ()
             return
-        while len(self._textures) < len(read):
-            self._textures.append(self._new_texture())
+        while len(self.buffer_textures) < len(read):
+            self.buffer_textures.append(self._new_texture())
         for number, declared in enumerate(read):
             self._attach(number, _BUFFER_FORMATS[declared.type], buffers[declared.name].glo)
         try:
             yield ((_TEXELS, 1),)
         finally:
-            for number in range(len(self._textures)):
+            for number in range(len(self.buffer_textures)):
                 self._attach(number, _BUFFER_FORMATS["float"], 0)
                 self._call("glBindTexture", _UINTS[:2], _TEXTURE_BUFFER, 0)
 
     def _attach(self, number: int, form: int, buffer: int) -> None:
         """Bind a texture to its unit, and a buffer to it; 0 takes the buffer off."""
         self._call.activate(_FIRST_UNIT + number)
-        self._call("glBindTexture", _UINTS[:2], _TEXTURE_BUFFER, self._textures[number].value)
+        self._call("glBindTexture", _UINTS[:2], _TEXTURE_BUFFER, self.buffer_textures[number].value)
         self._call("glTexBuffer", _UINTS, _TEXTURE_BUFFER, form, buffer)
 
     @cached_property

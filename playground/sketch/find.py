@@ -47,7 +47,7 @@ MAX_FILES = 2000
 MAX_BYTES = 2**30
 _MAX_RATIO = 200  # of what is unpacked to the zip; what is drawn or measured stays far below
 _ALWAYS_FINE = 2**26  # [bytes] unpacked, with any ratio
-_MAX_PACKS = 16  # packs in the cache
+MAX_PACKS = 16  # packs in the cache
 _STAMP = ".unpacked-from"
 _MAX_MANIFEST_BYTES = 2**20
 
@@ -289,7 +289,7 @@ def _can_make(target: Path) -> bool:
 
 def _drop_oldest(home: Path, but: Path) -> None:
     packs = sorted((p for p in home.iterdir() if p.is_dir() and p != but), key=lambda p: p.stat().st_mtime)
-    for old in packs[: max(len(packs) + 1 - _MAX_PACKS, 0)]:
+    for old in packs[: max(len(packs) + 1 - MAX_PACKS, 0)]:
         shutil.rmtree(old, ignore_errors=True)
 
 

@@ -101,7 +101,7 @@ def flatten(sketch: Sketch) -> Flat:
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
     """
     graph = sketch.graph
-    shape = _shape(graph)
+    shape = graph_shape(graph)
     values = effective_values(graph)
     for path, value in sketch.overrides:
         if path not in shape.targets:
@@ -114,7 +114,8 @@ def flatten(sketch: Sketch) -> Flat:
 
 
 @GRAPHS.cached(identities=1, weight=256)
-def _shape(graph: Graph) -> GraphShape:
+def graph_shape(graph: Graph) -> GraphShape:
+    """Expand the techniques of a graph into passes, in running order."""
     maker = Flattener()
     written = tuple(maker.expand(graph, "", {}))
     return GraphShape(
@@ -379,7 +380,7 @@ def substitute_variants(
     if not kinds:
         return flat
     limits = _Limits(frozenset(kinds), ref.partition(":")[0], stopped, refused, flat.set_inside)
-    shape = _substituted(flat.shape, limits)
+    shape = substituted_shape(flat.shape, limits)
     values = flat.values
     if plain := {path for path, name, default in shape.lacking if values[join(path, name)] != default}:
         more = (*refused, *sorted(plain))
@@ -411,7 +412,8 @@ class _Limits(NamedTuple):
 
 
 @GRAPHS.cached(identities=1, weight=256)
-def _substituted(shape: GraphShape, limits: _Limits) -> GraphShape:
+def substituted_shape(shape: GraphShape, limits: _Limits) -> GraphShape:
+    """Replace techniques by their variants, as far as the limits allow."""
     made = _Substitution(shape, limits)
     for path in shape.specs:  # a technique before what is inside it
         made.consider(path)

@@ -28,7 +28,7 @@ def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     store.write("one", CachedTextures((256, 256), (("height", "r32f"),), 1234.5, "alps: height", (data,)))
     store.write("two", CachedTextures((256, 256), (("light", "rgba8"),), 80.25, "alps: light", (data,)))
     store.close()
-    os.utime(store._path("two"), (1e9, 1e9))
+    os.utime(store.path_of("two"), (1e9, 1e9))
     (cache_directory() / "broken.land").write_bytes(b"x")
     os.utime(cache_directory() / "broken.land", (9e8, 9e8))
     (tmp_path / "terrain-shader-playground" / "packs").mkdir()

@@ -115,7 +115,7 @@ def test_ties_are_left_alike_by_both_methods(monkeypatch):
     step = SIDE // 8
 
     def on_the_grid(growing, triangle, point):
-        a, b, c = growing._triple(triangle)
+        a, b, c = growing.triple(triangle)
         x, y = np.meshgrid(np.arange(1, 8) * step, np.arange(1, 8) * step)
         inside = np.ones(x.shape, bool)
         for p, q in ((a, b), (b, c), (c, a)):
@@ -125,7 +125,7 @@ def test_ties_are_left_alike_by_both_methods(monkeypatch):
         j, i = result[delaunay.hash3(point, 2, growing.rules.seed)[0] % len(result)]
         return int(x[j, i]), int(y[j, i])
 
-    monkeypatch.setattr(delaunay._Growing, "_barycentre", on_the_grid)
+    monkeypatch.setattr(delaunay.Growing, "barycentre", on_the_grid)
     points, ties = 9, 0
     for seed in range(20):
         made = [

@@ -138,7 +138,7 @@ def test_a_raster_without_a_reference_system_says_so(tmp_path):
 def values(monkeypatch):
     monkeypatch.setattr(file_sources, "LARGE", 1000)
     monkeypatch.setattr(file_sources, "DEFAULT_SIDE", 61)
-    monkeypatch.setattr(gis, "_BAND", 400)
+    monkeypatch.setattr(gis, "BAND", 400)
 
     def values_(path, **changes):
         result = {"raw_size": (0, 0), "packing": 0, "no_data": 0, "first_row": 0, "metres": (0.0, 0.0)}
@@ -355,7 +355,7 @@ def test_a_mosaic_is_read_as_one(tmp_path, monkeypatch):
     np.testing.assert_array_equal(elevation.heights[::-1], heights)
     assert set(sidecars(tmp_path / "a.vrt")) == {west, east}, "they go where it goes"
     for large in (2**26, 1):  # judged by contents, or by times and sizes
-        monkeypatch.setattr(hashes, "_LARGE", large)
+        monkeypatch.setattr(hashes, "LARGE", large)
         before = hashes.content_key(tmp_path / "a.vrt")
         raster(west, heights[:, :40] + large)
         assert hashes.content_key(tmp_path / "a.vrt") != before, "a source's contents are its own"

@@ -103,14 +103,14 @@ def test_decoders_log_nothing_by_way_of_python(tmp_path):
 
 def test_playing_on_decodes_each_frame_once(tmp_path, monkeypatch):
     film, decoded = Film(own_film(tmp_path / "a.mp4")), []
-    real = Film._numbered
+    real = Film.numbered_frames
 
     def counted(self, container, key):
         for number, frame in real(self, container, key):
             decoded.append(number)
             yield number, frame
 
-    monkeypatch.setattr(Film, "_numbered", counted)
+    monkeypatch.setattr(Film, "numbered_frames", counted)
     for number in range(40):
         film.pixels(number, film.size)
     assert decoded == list(range(40))
@@ -121,7 +121,7 @@ def test_few_frames_are_held_however_long_the_film(tmp_path, monkeypatch):
     film = Film(own_film(tmp_path / "a.mp4"))
     for number in (39, 2, 38, 0, 20):
         np.testing.assert_allclose(at_corner(film.pixels(number, film.size)), colour(number), atol=4)
-        assert len(film._held) <= 5
+        assert len(film.held) <= 5
 
 
 def test_a_film_loops_or_stays(tmp_path):
@@ -375,7 +375,7 @@ def test_what_cannot_be_heard_is_a_sentence(tmp_path, monkeypatch):
     with pytest.raises(DataError, match="it has no sound"):
         Sound(own_film(tmp_path / "a.mp4", count=2))
     path = sound(tmp_path / "a.wav", tone(10)[None])
-    monkeypatch.setattr(media, "_MAX_BYTES", 1000)
+    monkeypatch.setattr(media, "MAX_BYTES", 1000)
     with pytest.raises(DataError, match="minutes of sound are too many; the limit is"):
         Sound(path)
 

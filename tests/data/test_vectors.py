@@ -275,7 +275,7 @@ def test_list_of_other_sources_is_refused_as_vector_file(tmp_path, ending, text)
 
 def test_what_ogr_takes_for_another_format_is_not_read(tmp_path, monkeypatch):
     pytest.importorskip("pyogrio")
-    monkeypatch.setattr(vectors, "_is_what_it_says", lambda *_: True)
+    monkeypatch.setattr(vectors, "matches_ending", lambda *_: True)
     private = geojson(tmp_path / "private.geojson", geometry("Point", [1, 2]))
     path = tmp_path / "a.kml"
     path.write_text(_VRT.format("", private).replace("secret", "private"))

@@ -307,8 +307,8 @@ def test_the_terrain_is_read_once_for_a_place_and_made_once(any_engine, sketch, 
     from playground.engine import eye_height as module
 
     reads = []
-    real = module._height_at
-    monkeypatch.setattr(module, "_height_at", lambda *value: reads.append(1) or real(*value))
+    real = module.height_at
+    monkeypatch.setattr(module, "height_at", lambda *value: reads.append(1) or real(*value))
     for _ in range(3):
         any_engine.render(sketch.with_camera(UNDER), size=(64, 36))
     assert len(reads) == 1 and any_engine.runs["height"] == 1

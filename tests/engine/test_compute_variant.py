@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.engine.compute_variant import _RECENT
+from playground.engine.compute_variant import RECENT
 from playground.engine.engine import Engine
 from playground.engine.software import Software
 from playground.errors import PlaygroundError
@@ -229,7 +229,7 @@ def test_a_spare_buffer_serves_what_needs_a_little_less(compute_engine, folder):
     folder.write("fill.glsl", PLAIN_FILL)
     text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
     folder.write("fill.comp", text.replace("+= 1.0", "+= float(work.length())"))
-    spare = compute_engine.runner.compute_variants._spare
+    spare = compute_engine.runner.compute_variants.spare
     result = []
     for side in (19, 18, 12):
         sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
@@ -247,7 +247,7 @@ def test_largest_spare_buffer_over_budget_stays_while_in_use(compute_engine, fol
         "fill.comp", text.replace("void main() {", f"{again}void main() {{ if (again > 99.0) return;")
     )
     monkeypatch.setattr(compute_engine.runner.pool, "limit", 0)
-    spare = compute_engine.runner.compute_variants._spare
+    spare = compute_engine.runner.compute_variants.spare
 
     def sizes_after(*sides):
         for number, side in enumerate(sides):
@@ -258,7 +258,7 @@ def test_largest_spare_buffer_over_budget_stays_while_in_use(compute_engine, fol
     assert sizes_after(19, 12, 4) == [19 * 19, 4 * 4], "of two the larger stays, and the last run's"
     kept = spare[0].buffer
     assert sizes_after(5, 19, 6) == [19 * 19, 6 * 6] and spare[0].buffer is kept
-    assert sizes_after(*[3, 5] * (_RECENT // 2 + 1)) == [3 * 3, 5 * 5]
+    assert sizes_after(*[3, 5] * (RECENT // 2 + 1)) == [3 * 3, 5 * 5]
 
 
 BUFFERED_HEAD = (
@@ -404,7 +404,7 @@ def test_buffers_are_read_by_functions(compute_engine, folder, size, fits, monke
         np.testing.assert_array_equal(compute_engine.read(sketch, "a"), expected)
         compute_engine.cache.clear()
     if isinstance(tuning, Software):
-        assert bool(tuning._textures) == fits
+        assert bool(tuning.buffer_textures) == fits
         tuning.release()
 
 

@@ -126,7 +126,7 @@ def test_compute_that_is_not_there_is_a_sentence(sketch):
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="EGL is Linux's")
 def test_gl_libraries_load_by_name_without_ldconfig(monkeypatch):
     """Three of them took as long as the context itself."""
-    if not all(map(module._loads, ("libEGL.so.1", "libGL.so.1"))):
+    if not all(map(module.is_loadable, ("libEGL.so.1", "libGL.so.1"))):
         pytest.skip("the libraries of this system have other names")
     monkeypatch.setattr(subprocess, "Popen", lambda *_, **__: pytest.fail("a process is started"))
     monkeypatch.setattr("ctypes.util.find_library", lambda name: pytest.fail(f"{name} is looked for"))
@@ -136,7 +136,7 @@ def test_gl_libraries_load_by_name_without_ldconfig(monkeypatch):
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="EGL is Linux's")
 def test_libraries_of_other_names_are_looked_for(monkeypatch):
     looked_for = []
-    monkeypatch.setattr(module, "_loads", lambda name: False)
+    monkeypatch.setattr(module, "is_loadable", lambda name: False)
     find = ctypes.util.find_library
     monkeypatch.setattr("ctypes.util.find_library", lambda name: looked_for.append(name) or find(name))
     open_context().release()

@@ -381,8 +381,8 @@ def test_a_mesh_as_large_as_it_gets_is_not_cached_for_ever(any_engine, folder):
     for n in range(2, 40):
         any_engine.texture(sketch.with_values({"a.grid": n}), "a")
     draws = any_engine.runner.draws
-    assert len(draws._meshes) <= 8
-    assert sum(len(p.arrays) for p in any_engine.runner.programs._by_text.values()) <= 8 + 2
+    assert len(draws.meshes) <= 8
+    assert sum(len(p.arrays) for p in any_engine.runner.programs.by_text.values()) <= 8 + 2
 
 
 OVER = """#pragma draw(mesh = "sheet", output = "frame:rgba32f", over = "below")

@@ -272,7 +272,7 @@ def test_it_can_be_stopped_between_any_two_of_its_heavy_steps(example, monkeypat
                 running.pop()
 
         monkeypatch.setattr(by_example, name, noted)
-    SOURCES.drop_of(by_example._ways)
+    SOURCES.clear()
     guide = lines(65)
     made_like(
         example,
@@ -317,7 +317,7 @@ def test_it_reports_how_far_it_is_and_can_be_stopped(example):
 
 def slow_order(strength):
     """Yield the places by the rule itself: each time all that wait are looked at."""
-    weak, sides = by_example._WEAK, ((0, -1), (0, 1), (-1, 0), (1, 0))
+    weak, sides = by_example.WEAK, ((0, -1), (0, 1), (-1, 0), (1, 0))
     waiting = set(product(*map(range, strength.shape)))
     border = set()
 
@@ -343,7 +343,7 @@ def slow_order(strength):
 def test_pieces_are_laid_in_the_order_of_the_rule(shape, share):
     rng = np.random.default_rng(8)
     strength = np.where(rng.random(shape) < share, rng.integers(1, 6, shape) / 4.0, 0.1)
-    assert list(by_example._order(strength)) == list(slow_order(strength))
+    assert list(by_example.filling_order(strength)) == list(slow_order(strength))
 
 
 def calls(order, strength):
@@ -365,7 +365,7 @@ def calls(order, strength):
 @pytest.mark.parametrize("height", [0.1, 1.0])
 def test_order_cost_of_pieces_is_near_linear_in_their_count(height):
     few, many = np.full((12, 12), height), np.full((24, 24), height)
-    assert calls(by_example._order, many) < 5 * calls(by_example._order, few)
+    assert calls(by_example.filling_order, many) < 5 * calls(by_example.filling_order, few)
 
 
 # ── the source ───────────────────────────────────────────────────────────────
@@ -408,7 +408,7 @@ def test_of_a_large_file_no_more_is_read_than_an_example_needs(tmp_path):
     assert (
         "its 4097 x 20 texels are read as 2049 x " in file_sources.example_notes(values(file, texel=10.0))[0]
     )
-    example, coarser = file_sources._example(values(file))
+    example, coarser = file_sources.example_of(values(file))
     assert (example.size[0], coarser) == (2049, 2.0)
 
 

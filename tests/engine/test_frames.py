@@ -158,10 +158,10 @@ def test_mouse_applies_from_its_frame_and_keeps_earlier_frames(any_engine, drawi
 def test_window_inputs_changing_per_frame_are_frame_uniforms(any_engine, drawing):
     any_engine.draw(drawing, size=(4, 4))
     runner, step = any_engine.runner, any_engine.record.plan.step("view.loop.view")
-    before = runner._usual(step, 3)
+    before = runner.frame_uniforms(step, 3)
     runner.mouse, runner.hover, runner.drag = (1.0, 2.0, 3.0, 4.0), (5.0, 6.0), (7.0, 8.0, 9.0, 10.0)
     runner.delta, runner.date = 0.5, (2026.0, 1.0, 2.0, 3.0)
-    changed = {name for name, value in runner._usual(step, 5).items() if value != before[name]}
+    changed = {name for name, value in runner.frame_uniforms(step, 5).items() if value != before[name]}
     assert {"time", "frame", "mouse", "hover", "drag", "date"} <= changed <= CLOCKED
 
 

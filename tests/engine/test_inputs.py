@@ -114,7 +114,7 @@ void main() {
 def each_engine(request, any_engine):
     """Give an engine that compiles in what is wired, as where the processor draws, and one that does not."""
     tuning = Software(any_engine.ctx) if request.param == "compiled in" else Tuning()
-    any_engine.runner.kernels.tuning, any_engine.runner.programs._write = tuning, tuning.write
+    any_engine.runner.kernels.tuning, any_engine.runner.programs.write = tuning, tuning.write
     return any_engine
 
 

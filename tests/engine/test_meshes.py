@@ -232,7 +232,7 @@ def test_a_tile_is_covered_once_with_any_neighbours(piece):
     expected = set()
     for side in lod.SIDES:
         step = 1 << (piece[1] + bool(piece[2] & side) if piece[1] < 4 else 4)
-        nodes = [(*divmod(int(node), lod.CELLS + 1)[::-1], 0) for node in lod._side(side, step)]
+        nodes = [(*divmod(int(node), lod.CELLS + 1)[::-1], 0) for node in lod.edge_nodes(side, step)]
         expected |= set(pairwise(nodes))
     assert open_edges == expected, "its sides are those of its neighbours"
 

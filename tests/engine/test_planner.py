@@ -93,13 +93,13 @@ def test_a_renewed_plan_is_the_one_made_from_nothing(name, wholes):
 @pytest.mark.slow
 def test_a_slider_that_no_size_names_plans_no_pass(monkeypatch, wholes):
     nodes: Counter[str] = Counter()
-    plan_node = planner_module._Planning._node
+    plan_node = planner_module.Planning.plan_node
 
     def counting(self, node):
         nodes[node.path] += 1
         return plan_node(self, node)
 
-    monkeypatch.setattr(planner_module._Planning, "_node", counting)
+    monkeypatch.setattr(planner_module.Planning, "plan_node", counting)
     sketch = load("")
     first = plan_of(sketch)
     assert set(nodes) == {step.path for step in first.walk()} and max(nodes.values()) == 1
@@ -150,7 +150,7 @@ def test_another_file_of_the_terrain_plans_anew(tmp_path):
 @pytest.mark.slow
 def test_what_is_used_is_weighed_twice_a_frame_at_most(ctx, monkeypatch):
     weighed: Counter[str] = Counter()
-    weigh = Cache._weigh
+    weigh = Cache.weigh
 
     def counting(self, key):
         weighed[key] += 1
@@ -159,7 +159,7 @@ def test_what_is_used_is_weighed_twice_a_frame_at_most(ctx, monkeypatch):
     sketch = load("")
     with Engine(ctx) as engine:
         engine.render(sketch, size=SIZE)
-        monkeypatch.setattr(Cache, "_weigh", counting)
+        monkeypatch.setattr(Cache, "weigh", counting)
         engine.render(sketch.with_values({"light.sun": (130.0, 20.0)}), size=SIZE)
         passes = len(list(engine.record.plan.walk()))
         # What ran is weighed as it is put away as well, once more where something stood under its key.

@@ -264,7 +264,7 @@ def test_large_heights_are_freed_after_upload_and_stay_described(values, tmp_pat
     terrain, kept = KIND.describe(value), KIND.make(value, (3, 2))["height"]
     monkeypatch.setattr("playground.engine.file_sources.KEPT", 1)
     np.testing.assert_array_equal(KIND.make(value, (3, 2))["height"], kept)
-    assert memo.SOURCES.count_of(file_sources._whole) == 0
+    assert memo.SOURCES.count_of(file_sources.read_whole) == 0
     for module in ("arrays", "grid"):
         monkeypatch.setattr(f"playground.data.{module}.open_regular", None)
     assert KIND.describe(value) == terrain
@@ -602,7 +602,7 @@ def test_huge_file_staleness_is_checked_without_reading(
     path = tmp_path / "a.r16"
     with path.open("wb") as handle:
         handle.truncate(2**27)  # sparse: it takes no room
-    monkeypatch.setattr(hashes, "_hash", None)
+    monkeypatch.setattr(hashes, "file_hash", None)
     before = PaintedFiles().content(path)
     assert PaintedFiles().content(path) == before
     with path.open("ab") as handle:

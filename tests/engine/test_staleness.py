@@ -510,12 +510,12 @@ REACHED = {
 def test_keys_are_computed_for_what_a_change_reaches(any_engine, many, folder, what, monkeypatch):
     of_one_plan = folder.sketch(TEXT.replace('"frames"', "5"))  # a count that names the time plans again
     frames, made = Frames(any_engine, of_one_plan, folder), []
-    usual = cache_keys._KeyComputation.part
+    usual = cache_keys.KeyComputation.part
     any_engine.keys_of(frames.plan())
     frames.change(what)
     plan = frames.plan()
     monkeypatch.setattr(
-        cache_keys._KeyComputation, "part", lambda self, node, *a: made.append(node) or usual(self, node, *a)
+        cache_keys.KeyComputation, "part", lambda self, node, *a: made.append(node) or usual(self, node, *a)
     )
     any_engine.keys_of(plan)
     assert {node.path.partition(".")[0] for node in made} == REACHED[what]

@@ -249,7 +249,7 @@ def test_cached_mipmaps_of_every_format_reload_bit_for_bit(shelf, folder, monkey
         assert len(made[form]) == 7 and len(made[form][-1]) == len(made[form][0]) // (67 * 41)
     for each in listed(shelf.folder):
         each.path.unlink()
-    second.disk_caching._is_new = True
+    second.disk_caching.pending = True
     shelf.keep(second)  # what came from there is read back as well
     third = shelf.engine()
     assert picture(third, sketch) == seen and third.record.ran == ["all", "view"]
@@ -422,7 +422,7 @@ def test_what_made_it_is_part_of_the_key(cached, worn, monkeypatch):
 
 
 def names(store: DiskCache) -> str:
-    return store._path("a key").name
+    return store.path_of("a key").name
 
 
 def test_the_tool_is_its_own_files(monkeypatch, tmp_path):
@@ -599,7 +599,7 @@ def test_a_damaged_file_is_dropped(tmp_path, damage):
     store = DiskCache(tmp_path)
     store.write("one", some(1))
     store.close()
-    path = store._path("one")
+    path = store.path_of("one")
     whole = path.read_bytes()
     path.write_bytes(DAMAGE[damage](whole))
     assert listed(tmp_path)[0].path == path
@@ -648,9 +648,9 @@ def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeyp
         engine = any_shelf.engine(floor)
         picture(engine, worn)
         keys = engine.keys_of(engine.record.plan)
-        engine.disk_caching._costs.clear()
+        engine.disk_caching.costs.clear()
         for name, cost in (costs | more).items():
-            engine.disk_caching._costs.put(keys.loops.get(name) or keys.steps[name].result, cost)
+            engine.disk_caching.costs.put(keys.loops.get(name) or keys.steps[name].result, cost)
         any_shelf.keep(engine)
         return {each.textures.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
 
@@ -670,8 +670,8 @@ def test_what_has_mipmaps_is_worth_more_on_a_software_renderer(any_shelf, worn, 
         pytest.skip("a graphics card has nothing to compile")
     picture(engine, worn)
     assert "height" in engine.record.results["terrain"].mipmapped
-    for key in engine.disk_caching._costs:
-        engine.disk_caching._costs.put(key, 1.0)
+    for key in engine.disk_caching.costs:
+        engine.disk_caching.costs.put(key, 1.0)
     any_shelf.keep(engine)
     (result,) = [each.textures for each in listed(any_shelf.folder)]
     assert result.made_for.endswith("worn.add") and result.cost == pytest.approx(2.0)
@@ -682,11 +682,11 @@ def test_cost_is_measured_per_terrain_pass_with_loop_as_one(any_shelf, worn):
     picture(engine, worn)
     keys = engine.keys_of(engine.record.plan)
     expected = {keys.steps["terrain"].result, keys.loops["worn"], keys.steps["light"].result}
-    assert set(engine.disk_caching._costs) == expected
-    assert all(cost > 0.0 for cost in engine.disk_caching._costs.values())
+    assert set(engine.disk_caching.costs) == expected
+    assert all(cost > 0.0 for cost in engine.disk_caching.costs.values())
     any_shelf.keep(engine)
     (light,) = (each.textures for each in listed(any_shelf.folder) if "light" in each.textures.made_for)
-    assert light.cost == pytest.approx(sum(engine.disk_caching._costs.values()), abs=0.01)
+    assert light.cost == pytest.approx(sum(engine.disk_caching.costs.values()), abs=0.01)
 
 
 def test_caching_waits_for_idle_terrain_and_reads_piece_by_piece(any_shelf, worn, monkeypatch):
@@ -773,7 +773,7 @@ def test_what_was_used_least_recently_goes_first(tmp_path):
         store.write(str(number), some(number))
     store.close()
     for number in range(5):
-        os.utime(store._path(str(number)), (1000.0 + number, 1000.0 + number))
+        os.utime(store.path_of(str(number)), (1000.0 + number, 1000.0 + number))
     assert store.read("0") is not None  # and so it was used
     each = bytes_in(tmp_path)[1] // 5
     trim(tmp_path, 3 * each + 10)
@@ -867,7 +867,7 @@ def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
     store = DiskCache(tmp_path)
     store.write("one", some(1))
     store.close()
-    store._path("one").write_bytes(b"damaged")
+    store.path_of("one").write_bytes(b"damaged")
 
     def refuses(*_: object, **__: object) -> None:
         raise PermissionError(13, "The process cannot access the file")

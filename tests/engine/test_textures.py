@@ -243,7 +243,7 @@ def test_it_saves_itself_with_words(tmp_path):
 def test_anisotropy_is_for_mipmaps_on_a_graphics_card(ctx, software, sampling, expected):
     binder = Binder(ctx, Software(ctx) if software else Tuning())
     try:
-        assert binder._new_sampler(sampling).anisotropy == min(expected, ctx.max_anisotropy)
+        assert binder.new_sampler(sampling).anisotropy == min(expected, ctx.max_anisotropy)
     finally:
         binder.release()
 

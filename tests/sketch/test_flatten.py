@@ -456,7 +456,7 @@ def test_a_nested_sketch_is_flattened_in_passing():
     # The live window does this for each frame.
     sketch = load()
     substitute_variants(flatten(sketch), VARIANTS)
-    made = module._shape, module._substituted
+    made = module.graph_shape, module.substituted_shape
     counts = [GRAPHS.count_of(function) for function in made]
     for i in range(20):
         substitute_variants(flatten(sketch.with_values({"relief": i})), VARIANTS)
