@@ -114,7 +114,7 @@ def _why(error: BaseException) -> str:
 
 _VIDEO = "a video file"
 _MAX_FRAMES = 2**22  # 19 hours at 60 frames a second
-_HELD_BYTES = 2**26  # of decoded frames, for what is shown again or backwards
+HELD_BYTES = 2**26  # of decoded frames, for what is shown again or backwards
 _MARGIN = 1e-6  # [s] a time is meant to be that of the frame that begins so little later
 _UNORDERED = ("avi",)  # their packets have the times at which they are decoded, not shown
 _HIGH = 720  # [pixels] from this height on a film that does not say its colours is BT.709, below BT.601
@@ -252,7 +252,7 @@ class Film:
 
     def _hold(self, number: int, frame: Any) -> None:
         size = frame.width * frame.height * 4
-        self.held.bound = max(_HELD_BYTES, 2 * size)
+        self.held.bound = max(HELD_BYTES, 2 * size)
         self.held.put(number, frame, size)
 
     def _open(self) -> av.container.InputContainer:
@@ -316,7 +316,7 @@ def as_pixels(frame: Any, size: tuple[int, int]) -> NDArray[np.uint8]:
     return np.ascontiguousarray(np.rot90(array, quarters)[::-1])
 
 
-@SOURCES.cached(weight=_HELD_BYTES)
+@SOURCES.cached(weight=HELD_BYTES)
 def _film(path: str, content: str) -> Film:
     return Film(Path(path))
 

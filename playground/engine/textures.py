@@ -35,7 +35,7 @@ _NUMPY: dict[str, np.dtype[Any]] = {
     "f4": np.dtype("f4"),
 }
 _MAX_HALF = 65504.0
-_BAND = 2**26  # [bytes] of a texture that is read, or of numbers that are written, at once
+BAND = 2**26  # [bytes] of a texture that is read, or of numbers that are written, at once
 
 
 def split_format(form: str) -> tuple[int, str]:
@@ -132,7 +132,7 @@ def write_texture(texture: moderngl.Texture, values: NDArray[Any]) -> None:
     """
     dtype = _NUMPY[texture.dtype]
     width, height = texture.size
-    rows = max(_BAND // (width * texture.components * dtype.itemsize), 1)
+    rows = max(BAND // (width * texture.components * dtype.itemsize), 1)
     if len(values) != height or rows >= height:
         texture.write(texel_bytes(values, dtype), alignment=1)
         return
@@ -202,11 +202,11 @@ def read_block(texture: moderngl.Texture, corner: tuple[int, int], size: tuple[i
 def read_bands(texture: moderngl.Texture) -> Iterator[tuple[int, NDArray[Any]]]:
     """Yield a texture's rows as ``read_raw`` has them, with the number of the first of each band.
 
-    A texture of up to ``_BAND`` bytes is one band.
+    A texture of up to ``BAND`` bytes is one band.
     """
     width, height = texture.size
     dtype, components = _NUMPY[texture.dtype], texture.components
-    rows = max(_BAND // (width * components * dtype.itemsize), 1)
+    rows = max(BAND // (width * components * dtype.itemsize), 1)
     if rows >= height:
         yield 0, read_raw(texture)
         return

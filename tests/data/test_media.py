@@ -117,7 +117,7 @@ def test_playing_on_decodes_each_frame_once(tmp_path, monkeypatch):
 
 
 def test_few_frames_are_held_however_long_the_film(tmp_path, monkeypatch):
-    monkeypatch.setattr("playground.data.media._HELD_BYTES", 5 * 64 * 48 * 4)
+    monkeypatch.setattr("playground.data.media.HELD_BYTES", 5 * 64 * 48 * 4)
     film = Film(own_film(tmp_path / "a.mp4"))
     for number in (39, 2, 38, 0, 20):
         np.testing.assert_allclose(at_corner(film.pixels(number, film.size)), colour(number), atol=4)

@@ -239,7 +239,7 @@ def rewritten(path):
 @pytest.mark.parametrize("large", [2**26, 1])
 @pytest.mark.parametrize("change", [replaced, rewritten])
 def test_a_file_of_the_same_size_and_time_is_read_anew(values, tmp_path, monkeypatch, change, large):
-    monkeypatch.setattr("playground.data.content_hash._LARGE", large)
+    monkeypatch.setattr("playground.data.content_hash.LARGE", large)
     file = tmp_path / "a.npy"
     an_hour_ago = file.stat().st_mtime_ns - 3600 * 10**9
     os.utime(file, ns=(an_hour_ago, an_hour_ago))

@@ -64,7 +64,7 @@ def test_large_texture_round_trips_in_bands_bit_for_bit(ctx, form, monkeypatch):
     values = np.random.default_rng(2).random(shape).astype(np.float32)
     whole, parts = make_texture(ctx, (5, 7), form), make_texture(ctx, (5, 7), form)
     write_texture(whole, values)
-    monkeypatch.setattr("playground.engine.textures._BAND", bytes_of((5, 3), form))
+    monkeypatch.setattr("playground.engine.textures.BAND", bytes_of((5, 3), form))
     write_texture(parts, values)
     bands = list(read_bands(parts))
     assert [south for south, _ in bands] == [0, 3, 6]

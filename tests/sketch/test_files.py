@@ -298,7 +298,7 @@ def test_small_letters_come_first_and_what_is_not_there_is_none(tmp_path: Path) 
 @pytest.mark.parametrize("large", [False, True])
 def test_the_contents_change_with_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, large: bool) -> None:
     if large:
-        monkeypatch.setattr("playground.data.content_hash._LARGE", 1)
+        monkeypatch.setattr("playground.data.content_hash.LARGE", 1)
     path = grid(tmp_path / "a.flt", ".hdr")
     seen = [(content_hash(path), content_key(path))]
     for ending, text in ((".hdr", "other"), (".prj", "new"), (".prj", "newer")):

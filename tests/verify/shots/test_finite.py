@@ -175,7 +175,7 @@ def test_large_textures_are_looked_at_in_bands(
     drawing: Engine, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write(folder, "middle:r32f", ILL.replace("texel == at", "texel.y > 2 && texel.x == 5"), NAN)
-    monkeypatch.setattr("playground.engine.textures._BAND", 5 * 16 * 4)
+    monkeypatch.setattr("playground.engine.textures.BAND", 5 * 16 * 4)
     assert found_in(drawing, folder) == NotFinite("middle", "middle", (5, 3), "NaN", 13, (16, 16))
 
 
