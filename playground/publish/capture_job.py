@@ -158,28 +158,28 @@ class JobProcess:
         self.stopping = False  # whether ``stop`` was called
         # It outlives its parent until its next part is done, to remove the files that it has begun.
         self._pool = Pool(__name__, options=(software, driver), ends_with_parent=False)
-        self._task = self._pool.submit(job)
+        self.task = self._pool.submit(job)
         self._pool.shutdown(wait=False)  # there is no other job
 
     @property
     def progress(self) -> tuple[int, int]:
         """How many parts are done, and of how many; (0, 0) while it begins."""
-        return self._task.progress or (0, 0)
+        return self.task.progress or (0, 0)
 
     def stop(self) -> None:
         """Cancel it; it removes what it has begun, for which it has a while until it is killed."""
         if not self.stopping:
             self.stopping = True
-            self._task.cancel()
+            self.task.cancel()
 
     def poll(self, timeout: float = 0.0) -> Finished | None:
         """Return how it ended, None while it continues; waits ``timeout`` seconds at the most."""
-        return _finished(self._task.result()) if self._task.wait(timeout) else None
+        return _finished(self.task.result()) if self.task.wait(timeout) else None
 
     def close(self) -> None:
         """Stop it and wait until it has removed what it has begun; kill it if that takes too long."""
         self.stop()
-        self._task.result()
+        self.task.result()
 
 
 def _finished(outcome: Outcome) -> Finished:

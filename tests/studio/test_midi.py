@@ -330,7 +330,7 @@ def test_without_a_device_or_a_package_one_sentence_says_so(remote: Harness, mon
 def test_hotplugged_device_is_found_and_unplugging_is_no_error(
     remote: Harness, device: Device, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr("playground.studio.remote.midi._LOOKS", 0.05)
+    monkeypatch.setattr("playground.studio.remote.midi.SCAN_INTERVAL", 0.05)
     device.learn("height.level")
     midi = remote.remotes.midi
     assert midi is not None and midi.devices == ["a box of knobs"]

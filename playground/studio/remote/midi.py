@@ -23,7 +23,7 @@ from playground.studio.remote.controllers import Move, Source
 MAX_WAITING = 1024
 """Notes that may wait for the window."""
 _EVERY = 0.004  # [s] between questions to the devices
-_LOOKS = 3.0  # [s] between looks for new devices
+SCAN_INTERVAL = 3.0  # [s] between looks for new devices
 _DEFAULT, _FALLBACK = "rtmidi", "pygame"  # what mido receives by
 
 
@@ -94,7 +94,7 @@ class Midi:
         looked = time.monotonic()
         while not self._ended.wait(_EVERY):
             try:
-                if time.monotonic() - looked > _LOOKS:
+                if time.monotonic() - looked > SCAN_INTERVAL:
                     looked = time.monotonic()
                     self._connect()
                 for port in list(self._ports.values()):

@@ -132,7 +132,7 @@ def test_a_process_that_dies_is_reported(captures: Captures) -> None:
     captures.settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
     captures.start()
     assert captures.working is not None
-    task = captures.working._task
+    task = captures.working.task
     while not task.begun:
         time.sleep(0.005)
     assert task.slot is not None and task.slot.process is not None
