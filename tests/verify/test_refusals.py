@@ -11,8 +11,9 @@ import pytest
 
 from playground.errors import PlaygroundError
 from playground.sketch.model import tolerance_of
+from playground.studio.edits.edits import taken
 from playground.verify.bench.results import read
-from playground.verify.shots.adapters import levels_of, taken
+from playground.verify.shots.adapters import levels_of
 from playground.verify.shots.compare import Light, compare, mask_of
 from playground.verify.shots.judge import strip_of
 from playground.verify.shots.mutants.rendering import rendering_mutants
