@@ -36,7 +36,7 @@ def site(tmp_path: Path) -> Path:
     shutil.copytree(
         ROOT / "playground",
         tmp_path / "playground",
-        ignore=shutil.ignore_patterns("node_modules", "__pycache__", "texts", "web"),
+        ignore=shutil.ignore_patterns("node_modules", "__pycache__", "texts", "runtime", "bundle"),
     )
     install(tmp_path, DISTRIBUTION, "playground/__init__.py", "playground/cli.py")
     return tmp_path

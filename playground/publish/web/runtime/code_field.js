@@ -20,7 +20,7 @@ const EDITED = new (class extends GutterMarker { elementClass = "edited"; })();
 
 /** The document without its head: CodeMirror then adopts style sheets, which a page's policy allows, and adds
  *  no style element, which it forbids. */
-const ROOT = new Proxy(document, {
+const rootOf = (/** @type {Document} */ page) => new Proxy(page, {
   get(target, key) {
     const found = key === "head" ? null : Reflect.get(target, key);
     return typeof found === "function" ? found.bind(target) : found;
@@ -35,7 +35,7 @@ export function createCodeField(host, { hint, onInput }) {
   const told = make("p", { className: "unseen", id: `code-hint-${++fields}` }, hint);
   const box = make("div", { className: "code-field" }, told);
   host.append(box);
-  const view = new EditorView({ parent: box, root: ROOT });
+  const view = new EditorView({ parent: box, root: rootOf(document) });
   box.addEventListener("keydown", (event) => event.stopPropagation()); // keys of the picture are letters here
 
   const always = [
