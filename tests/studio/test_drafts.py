@@ -415,6 +415,22 @@ def test_undo_and_redo_during_a_check(harness: Harness) -> None:
     assert (harness.technique, harness.size, harness.level) == ("./hills", 33, 0.5)
 
 
+@pytest.mark.parametrize(("answer", "level"), [(GOOD, 0.75), (BAD, 0.25)])
+def test_an_undo_affects_what_is_shown_while_a_save_is_checked(
+    harness: Harness, answer: SandboxReport, level: float
+) -> None:
+    harness.save('use = "./hills"\n', 'use = "./hills"\nset = { level = 0.25 }\n')
+    harness.frame()
+    harness.drafts.set(LEVEL, 0.5)
+    harness.frame()
+    harness.save("level = 0.25", "level = 0.75")
+    harness.bench.undo.undo()
+    harness.frame()
+    assert harness.drafts.testing and harness.level == 0.25
+    harness.answer(answer)
+    assert harness.level == level and harness.bench.undo.history.done == 0
+
+
 def test_a_choice_waits_for_a_file_that_cannot_be_read(harness: Harness) -> None:
     harness.drafts.choose("height", "./dunes")
     harness.save("[view]", "[view")

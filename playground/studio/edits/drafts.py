@@ -442,6 +442,15 @@ class Drafts:
 
         return self._change(change)
 
+    def apply(self, changes: State) -> bool:
+        """Make changes to the edits, None being what the file says; as ``restore``, which returns the same.
+
+        Each draft gets all of them: what is coming may already have one that what is shown has not.
+        """
+        return self._change(
+            lambda draft: draft.with_all(edits_of(applied(state_of(draft.edits, {}), changes)))
+        )
+
     def restore_with_save(self, edits: Edits) -> None:
         """Replace values and camera in what was just saved; what is shown stays until that is drawn."""
         if self._is_checked and self._saved is not None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.studio.clock import stepped, toggle_loop
-from playground.studio.edits.history import KEYFRAMES, History, State, applied, edits_of, state_of, steps_of
+from playground.studio.edits.history import KEYFRAMES, History, State, steps_of
 from playground.studio.notices import Notices
 from playground.studio.paint.painting import Painting
 from playground.studio.reload.stages import ReloadStage
@@ -114,16 +114,13 @@ class Undo:
     def _apply(self, changes: State) -> bool:
         """Set what a step changed; return False, with a notice, where that is refused."""
         session = self.session
-        latest = session.drafts.latest
-        if latest is None:
+        keyframes, time = changes.get((KEYFRAMES, "")), changes.get(("time", ""))
+        if session.shown is None:
             return False
-        values = applied(state_of(latest.edits, session.view.steps), changes)
-        keyframes = values.pop((KEYFRAMES, ""), None)
         if isinstance(keyframes, tuple) and not self.file.write_keyframes(keyframes):
             return False
-        if not session.drafts.restore(edits_of(values)):
+        if not session.drafts.apply(changes):
             return False
-        time = values.pop(("time", ""), None)
         if isinstance(time, float):
             session.clock.time = time
         for path, step in steps_of(changes).items():
