@@ -80,7 +80,7 @@ class Harness:
     def start(self, name: str) -> None:
         """Open a window on a sketch."""
         self.sandbox = FakeSandbox()
-        self.memory = memory = memory_of(self.folder / name / "sketch.toml", self.folder / "state")
+        memory = memory_of(self.folder / name / "sketch.toml", self.folder / "state")
         result, _ = memory.read()
         self.session = Session(
             self.engine, self.folder / name, start=result.start, sandbox=self.sandbox, now=lambda: self.time
@@ -119,6 +119,11 @@ class Harness:
         self.frame()
 
     def close(self) -> None:
+        self.autosave.close()
+
+    def crash(self) -> None:
+        """End the window without writing what it still has to; the system lets go of its lock."""
+        self.autosave.latest = None
         self.autosave.close()
 
     @property

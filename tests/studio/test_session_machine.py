@@ -13,6 +13,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+import moderngl
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, seed, settings
@@ -98,15 +99,15 @@ class Model:
 class SessionMachine(RuleBasedStateMachine):
     """Two sketches, a window on one of them, and a sandbox that answers when a rule says so."""
 
-    engine: Engine
+    ctx: moderngl.Context
     folder: Path
 
     def __init__(self) -> None:
         super().__init__()
+        self.engines = [Engine(self.ctx)]  # its own: what one has cached needs no check
         set_level = 'use = "./hills"\nset = { level = 0.25 }\n'
         sketch = SKETCH.replace('use = "./hills"\n', set_level)
-        self.harness = Harness(Path(tempfile.mkdtemp(dir=self.folder)), self.engine, sketch)
-        self.engines: list[Engine] = []
+        self.harness = Harness(Path(tempfile.mkdtemp(dir=self.folder)), self.engines[0], sketch)
         self.models = {"one": Model(), "two": Model()}
         self.shown = self.opened = "one"
         self.pending: list[State] = []  # choices that are checked, in order
@@ -410,10 +411,7 @@ class SessionMachine(RuleBasedStateMachine):
     @precondition(lambda self: not self.is_broken)
     @rule(name=st.sampled_from(("one", "two")), crashes=st.booleans())
     def restart(self, name: str, crashes: bool) -> None:
-        if not crashes:
-            self.harness.close()
-        else:
-            self.harness.memory.close()
+        (self.harness.crash if crashes else self.harness.close)()
         self.harness.start(name)
         self.shown = self.opened = name
         self.pending, self.gives_way = [], self.model.give_way()
@@ -425,7 +423,7 @@ class SessionMachine(RuleBasedStateMachine):
     def lose_the_context(self) -> None:
         session = self.harness.session
         is_idle, before = self.harness.drafts.stage is ReloadStage.NONE, session.read()
-        self.engines.append(Engine(self.engine.ctx))
+        self.engines.append(Engine(self.ctx))
         session.rebuild(self.engines[-1])
         self.is_lost = True
         self.frame()
@@ -466,7 +464,7 @@ class SessionMachine(RuleBasedStateMachine):
         stops = {path: step for (kind, path), step in self.model.state.items() if kind == "step"}
         frame = session.read()
         stops = {path: step for path, step in stops.items() if path in session.repeats}
-        with Engine(self.engine.ctx) as fresh:
+        with Engine(self.ctx) as fresh:
             picture = fresh.render(expected, size=SIZE, steps=stops).array
         np.testing.assert_array_equal(frame.array[..., :3], picture[..., :3])
         self.edits_are_those_of_the_model()
@@ -502,8 +500,8 @@ class SessionMachine(RuleBasedStateMachine):
             assert self.model.done == left
 
 
-def check(engine: Engine, folder: Path, examples: int, steps: int, number: str) -> None:
-    machine = type("Machine", (SessionMachine,), {"engine": engine, "folder": folder})
+def check(ctx: moderngl.Context, folder: Path, examples: int, steps: int, number: str) -> None:
+    machine = type("Machine", (SessionMachine,), {"ctx": ctx, "folder": folder})
     chosen = settings(
         max_examples=examples,
         stateful_step_count=steps,
@@ -517,12 +515,12 @@ def check(engine: Engine, folder: Path, examples: int, steps: int, number: str) 
     run_state_machine_as_test(machine, settings=chosen)
 
 
-def test_a_session_shows_the_files_with_the_edits(any_engine: Engine, tmp_path: Path) -> None:
-    check(any_engine, tmp_path, 32, 14, "every day")
+def test_a_session_shows_the_files_with_the_edits(ctx: moderngl.Context, tmp_path: Path) -> None:
+    check(ctx, tmp_path, 32, 14, "every day")
 
 
 @pytest.mark.slow
 def test_a_session_shows_the_files_under_many_sequences(
-    any_engine: Engine, tmp_path: Path, pytestconfig: pytest.Config
+    ctx: moderngl.Context, tmp_path: Path, pytestconfig: pytest.Config
 ) -> None:
-    check(any_engine, tmp_path, 40, 25, pytestconfig.getoption("--seed") or "a")
+    check(ctx, tmp_path, 40, 25, pytestconfig.getoption("--seed") or "a")
