@@ -415,6 +415,16 @@ def test_undo_and_redo_during_a_check(harness: Harness) -> None:
     assert (harness.technique, harness.size, harness.level) == ("./hills", 33, 0.5)
 
 
+def test_a_file_that_is_shown_already_is_not_what_fails(harness: Harness) -> None:
+    harness.drafts.choose("height", "./dunes")
+    harness.drafts.set(ELEVATION, harness.file("a.npy"))
+    harness.frame()
+    assert harness.drafts.testing
+    harness.answer(BAD)
+    assert "a.npy" not in harness.messages and harness.session.error is not None
+    assert harness.technique == "./hills" and not harness.drafts.testing
+
+
 @pytest.mark.parametrize(("answer", "level"), [(GOOD, 0.75), (BAD, 0.25)])
 def test_an_undo_affects_what_is_shown_while_a_save_is_checked(
     harness: Harness, answer: SandboxReport, level: float

@@ -521,7 +521,8 @@ class Drafts:
         if is_new or (choice.chosen and coming is not None):
             if not is_new:  # it takes back what is being checked
                 self._choices = [other for other in self._choices if not other.keys <= choice.keys]
-            self._choices.append(choice)
+            if is_new or any(other.keys & choice.keys for other in self._choices):  # else it is shown already
+                self._choices.append(choice)
             self._begin(choice.use or self.path.name)
             self._propose(self._coming_notes)
         elif self._is_checked:
