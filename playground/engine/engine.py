@@ -275,7 +275,7 @@ class Engine(Renderer):
         Raises ``ContextError`` once the engine was released.
         """
         self._context.check()
-        return self.finite_check.first()
+        return self._finite_check.first()
 
     def fingerprint(
         self,

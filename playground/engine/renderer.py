@@ -112,14 +112,14 @@ class Renderer:
         )
         self._keys = KeyMaker(content=self.painted.content)
         self._hasher = PictureHasher()
-        self.finite_check = FiniteCheck(self)
+        self._finite_check = FiniteCheck(self)
         self._timer: Timer | None = None
         self._context = _ContextUse(self, owns=owns_context)
 
     @property
     def clock(self) -> str:
         """Which clock the times come from."""
-        return self.frame_timer().clock
+        return self._frame_timer().clock
 
     @property
     def released(self) -> bool:
@@ -241,7 +241,7 @@ class Renderer:
 
         Yields after each what is not finite in it, if anything; another frame ends it.
         """
-        return self.finite_check.looks()
+        return self._finite_check.looks()
 
     def recall(self, plan: Plan) -> None:
         """Restore ``plan`` and ``results`` of an earlier frame; what is cached of it does not run.
@@ -307,7 +307,7 @@ class Renderer:
             self.cache,
             runner,
             interruption=Interruption(self._ctx.finish, options.piece, options.patience),
-            timer=self.frame_timer() if options.profiling else None,
+            timer=self._frame_timer() if options.profiling else None,
         )
         runner.works.waits = options.patience is None
         runner.works.keep(record.keys.computed)
@@ -332,7 +332,7 @@ class Renderer:
         result = choose(keys, needs, ref, self.cache.get, lambda _: False, skips=True)
         self.record.results = execution.results = result.taken
         if self.options.looks_early:
-            execution.ended = lambda step, result: self.finite_check.look_early(
+            execution.ended = lambda step, result: self._finite_check.look_early(
                 step, result, keys.computed(step.path)
             )
         execution.last_uses = last_uses(plan, result.nodes, keys, ref)
@@ -347,7 +347,7 @@ class Renderer:
             finally:
                 self.runner.binder.tidy()
 
-    def frame_timer(self) -> Timer:
+    def _frame_timer(self) -> Timer:
         """Return the timer of passes, created at the first call."""
         self._context.check()
         if self._timer is None:

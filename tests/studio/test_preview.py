@@ -439,7 +439,7 @@ def slow(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) ->
         (tmp_path / name).write_text(text, encoding="utf-8")
     monkeypatch.setattr(ContextInfo, "software", True)
     timer = MadeUpTimer(any_engine, each={"view": 1000.0 / (SLOW_SIZE[0] * SLOW_SIZE[1])})
-    monkeypatch.setattr(any_engine, "frame_timer", lambda: timer)
+    monkeypatch.setattr(any_engine, "_frame_timer", lambda: timer)
     now = [0.0]
     made = Slow(Session(any_engine, tmp_path / "sketch.toml", now=lambda: now[0]), timer, now)
     yield made

@@ -138,7 +138,7 @@ def test_the_largest_and_the_smallest_numbers_are_finite() -> None:
 
 def test_what_is_finite_is_no_alarm(drawing: Engine, folder: Path) -> None:
     assert found_in(drawing, folder) is None
-    assert drawing.finite_check.looked_at == 4  # three textures of floats, and the picture of bytes beneath
+    assert drawing._finite_check.looked_at == 4  # three textures of floats, and the picture of bytes beneath
 
 
 NAMES = {NAN: "NaN", INFINITY: "infinity", f"-{INFINITY}": "-infinity"}
@@ -204,11 +204,11 @@ def test_a_plain_shader_of_bytes_is_looked_beneath(ctx: moderngl.Context, tmp_pa
 def test_only_what_ran_anew_is_looked_at_again(drawing: Engine, folder: Path) -> None:
     assert found_in(drawing, folder) is None
     assert found_in(drawing, folder) is None
-    assert drawing.finite_check.looked_at == 0
+    assert drawing._finite_check.looked_at == 0
     assert found_in(drawing, folder, {"view.broken": 0.25}) is None
-    assert drawing.finite_check.looked_at == 1
+    assert drawing._finite_check.looked_at == 1
     assert found_in(drawing, folder, {"terrain.gain": 0.5}) is None
-    assert drawing.finite_check.looked_at == 4
+    assert drawing._finite_check.looked_at == 4
 
 
 def test_what_is_cached_is_still_reported(drawing: Engine, folder: Path) -> None:
