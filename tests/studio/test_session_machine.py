@@ -34,6 +34,7 @@ from playground.studio.edits.history import state_of
 from playground.studio.reload.stages import ReloadStage
 
 from ..loading import load
+from ..spread import git
 from .session_desk import BAD, ELEVATION, GOOD, LEVEL, SIZE, SKETCH, Harness
 
 FILE_LEVEL = 0.25
