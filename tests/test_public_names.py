@@ -27,8 +27,8 @@ EXPLAINED = {
 TOOLS = {
     "borrowed", "cache", "clock", "disk_caching", "draw_above_terrain", "draw_window", "drawn",
     "eye_height", "keys_of", "not_finite_by_pass", "options", "painted",
-    "picture_hash", "plain_forms", "plan", "plan_for_window", "recall", "record", "released", "runner", "runs",
-    "stale", "texture_of", "warnings",
+    "picture_hash", "plain_forms", "plan", "plan_for_window", "recall", "record", "released", "runner",
+    "runs", "stale", "texture_of", "warnings",
 }  # fmt: skip
 """What the window and other tools use as well."""
 
