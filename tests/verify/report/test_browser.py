@@ -13,8 +13,8 @@ from playground.data.image_files import read_png
 from playground.verify.shots.report import write_report
 from playground.verify.shots.review import Review
 
-from .browser import MISSING, Browser
-from .verify.report.pictures import picture
+from ...browser import MISSING, Browser
+from .pictures import picture
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 
