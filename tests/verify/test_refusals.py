@@ -11,9 +11,8 @@ import pytest
 
 from playground.errors import PlaygroundError
 from playground.sketch.model import tolerance_of
-from playground.studio.edits.edits import taken
 from playground.verify.bench.results import read
-from playground.verify.shots.adapters import levels_of
+from playground.verify.shots.adapters import levels_of, picture_from
 from playground.verify.shots.compare import Light, compare, mask_of
 from playground.verify.shots.judge import strip_of
 from playground.verify.shots.mutants.rendering import rendering_mutants
@@ -26,7 +25,7 @@ from ..test_refusals import Row, rows
 RECORD = json.loads(to_json(Record(sketch="hills", shot="dawn", word="differs", message="it differs")))
 NAMES = {
     **{each.__name__: each for each in (compare, from_json, levels_of, mask_of, read, read_fallbacks)},
-    **{each.__name__: each for each in (Light, read_results, strip_of, taken, tolerance_of)},
+    **{each.__name__: each for each in (Light, read_results, strip_of, picture_from, tolerance_of)},
     "np": np,
     "PICTURE": np.zeros((4, 6, 4), np.uint8),
     "A": "name = 'a'\nbroke = 'A.'\nsamples = 1",
