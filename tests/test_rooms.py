@@ -31,7 +31,7 @@ NAMES = list(ROOMS)
 CORE_TESTS = (
     "sketch/test_load.py",
     "shader/test_outline.py",
-    "data/test_files.py",
+    "data/test_bounds.py",
 )
 ROOM_TESTS = {
     "studio": ("test_input.py",),  # a panel of a window, without a screen
