@@ -1,0 +1,52 @@
+"""The tokens of a GLSL text, each with its place."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+_TOKEN = re.compile(
+    r"(?P<word>[A-Za-z_]\w*)"
+    r"|(?P<number>(?:0[xX][0-9a-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\w*)"
+    r"|(?P<comment>//(?:[^\n\\]|\\(?:\r?\n|.)?)*|/\*.*?(?:\*/|\Z))"
+    r"|(?P<mark><<=|>>=|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||\^\^|\#\#|[-+*/%&|^]=|[-+*/%&|^~!<>=?:;,.(){}\[\]])"
+    r"|(?P<directive>\#(?:\"[^\"\n]*\"|[^\n\\/]|\\(?:\r?\n|.)?|/(?![/*])|/\*.*?(?:\*/|\Z))*)"
+    r'|(?P<string>"[^"\n]*")'
+    r"|(?P<other>[^\s\\])",
+    re.DOTALL,
+)
+_NOTHING: frozenset[str] = frozenset()
+
+
+class Token(NamedTuple):
+    """A token; of a macro's text it has the place of the call that it stands for."""
+
+    text: str
+    kind: str  # word | number | mark | directive | string | other
+    start: int
+    end: int
+    spelled: int  # where the text spells it: in a macro's definition, else start; -1 of a predefined macro
+    macros: frozenset[str] = _NOTHING  # those that it comes from
+
+
+class Comment(NamedTuple):
+    """A comment, with its marks."""
+
+    text: str
+    start: int
+    end: int
+
+
+def tokenize(text: str) -> tuple[list[Token], list[Comment]]:
+    """Return the tokens of a text, directives whole among them, and its comments."""
+    tokens: list[Token] = []
+    comments: list[Comment] = []
+    new, add = tuple.__new__, tokens.append
+    for match in _TOKEN.finditer(text):
+        kind = match.lastgroup
+        start, end = match.span()
+        if kind == "comment":
+            comments.append(Comment(match.group(), start, end))
+        else:
+            add(new(Token, (match.group(), kind, start, end, start, _NOTHING)))
+    return tokens, comments
