@@ -26,11 +26,15 @@ class Node:
 
 @dataclass(slots=True, eq=False)
 class Name(Node):
+    """A variable, or a function or type named alone."""
+
     name: str
 
 
 @dataclass(slots=True, eq=False)
 class Literal(Node):
+    """A number."""
+
     text: str
 
 
@@ -57,6 +61,8 @@ class Method(Node):
 
 @dataclass(slots=True, eq=False)
 class Index(Node):
+    """``heights[i]``."""
+
     base: Node
     index: Node
     parts: ClassVar = ("base", "index")
@@ -74,6 +80,8 @@ class Member(Node):
 
 @dataclass(slots=True, eq=False)
 class Unary(Node):
+    """``-x``, ``x++``."""
+
     operator: str
     operand: Node
     is_postfix: bool
@@ -92,6 +100,8 @@ class Binary(Node):
 
 @dataclass(slots=True, eq=False)
 class Assign(Node):
+    """``=``, ``+=`` and the like."""
+
     operator: str
     target: Node
     value: Node
@@ -110,6 +120,8 @@ class Conditional(Node):
 
 @dataclass(slots=True, eq=False)
 class Parenthesized(Node):
+    """``(x)``."""
+
     inside: Node
     parts: ClassVar = ("inside",)
 
@@ -159,6 +171,8 @@ class Declaration(Node):
 
 @dataclass(slots=True, eq=False)
 class Parameter(Node):
+    """One parameter of a function."""
+
     type: Type
     name: str  # "" for one without
     at: int
@@ -180,6 +194,8 @@ class Function(Node):
 
 @dataclass(slots=True, eq=False)
 class Struct(Node):
+    """``struct S {…}``."""
+
     name: str  # "" for one without
     at: int
     members: list[Declaration]
@@ -210,6 +226,8 @@ class Precision(Node):
 
 @dataclass(slots=True, eq=False)
 class Block(Node):
+    """Statements in braces."""
+
     statements: list[Node]
     parts: ClassVar = ("statements",)
 
@@ -224,6 +242,8 @@ class Expression(Node):
 
 @dataclass(slots=True, eq=False)
 class If(Node):
+    """``if``, with or without ``else``."""
+
     condition: Node  # a Declaration where it declares a variable
     yes: Node
     no: Node | None
@@ -232,6 +252,8 @@ class If(Node):
 
 @dataclass(slots=True, eq=False)
 class For(Node):
+    """``for``."""
+
     start: Node
     condition: Node | None
     step: Node | None
@@ -241,6 +263,8 @@ class For(Node):
 
 @dataclass(slots=True, eq=False)
 class While(Node):
+    """``while``."""
+
     condition: Node
     body: Node
     parts: ClassVar = ("condition", "body")
@@ -248,6 +272,8 @@ class While(Node):
 
 @dataclass(slots=True, eq=False)
 class Do(Node):
+    """``do`` … ``while``."""
+
     body: Node
     condition: Node
     parts: ClassVar = ("body", "condition")
@@ -255,6 +281,8 @@ class Do(Node):
 
 @dataclass(slots=True, eq=False)
 class Switch(Node):
+    """``switch``."""
+
     value: Node
     body: Block
     parts: ClassVar = ("value", "body")

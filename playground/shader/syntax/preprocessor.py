@@ -55,7 +55,7 @@ class Preprocessed:
     comments: list[Comment] = field(default_factory=list)
     directives: list[Token] = field(
         default_factory=list
-    )  # those in force, but for conditions that were judged
+    )  # those in force, conditions that were judged excepted
     macros: list[Macro] = field(default_factory=list)  # each definition in force
     inactive: list[tuple[int, int]] = field(default_factory=list)  # spans that conditions leave out
     expansions: list[Expansion] = field(default_factory=list)
@@ -298,7 +298,7 @@ class _Preprocessor:
         return is_defined == (word == "ifdef")
 
     def _condition_tokens(self, tokens: list[Token]) -> list[str | None]:
-        """Return a condition's tokens, ``defined`` answered and macros expanded; None for an unknown number."""
+        """Return a condition's tokens, macros expanded, ``defined`` answered; None: not known."""
         plain: list[Token] = []
         index = 0
         while index < len(tokens):
