@@ -115,7 +115,7 @@ class Tree:
 def parse(text: str, defined: Mapping[str, str] | None = None, *, all_branches: bool = False) -> Tree:
     """Return the tree of a text; it never raises.
 
-    ``defined``: macros that are defined before it. ``all_branches``: an author's file, whose conditions nobody
+    ``defined``: macros that are defined before it. ``all_branches``: a file whose conditions nobody
     has judged. All branches are read at once; where that is no GLSL, the judged text is, and each span that
     it leaves out apart, in ``branches``.
     """
