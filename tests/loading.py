@@ -6,8 +6,9 @@ from functools import cache
 from pathlib import Path
 
 from playground.paths import GLSL
+from playground.shader.wrap import wrap
 from playground.sketch.load import load_with
-from playground.sketch.model import Sketch, Technique
+from playground.sketch.model import Sketch, Technique, kernels_of
 from playground.sketch.techniques import Techniques, WithLibrary, shipped_techniques
 
 _LIBRARY = Techniques()
@@ -22,3 +23,16 @@ def load(name: str | Path = "") -> Sketch:
 def library() -> dict[str, Technique]:
     """Return the techniques of ``glsl/`` by name."""
     return {name: _LIBRARY.read(name, GLSL, GLSL) for name in shipped_techniques()}
+
+
+@cache
+def stages() -> dict[tuple[str, str], str]:
+    """Return every stage of the library as both drivers have it, by kind and text, each with a name."""
+    result: dict[tuple[str, str], str] = {}
+    for name, technique in library().items():
+        for form in (technique, *(variant.technique for variant in technique.variants)):
+            for path, kernel in kernels_of(form):
+                for driver in ("fragment", "compute") if kernel.kind != "source" else ():
+                    for kind, stage in wrap(kernel, driver, 430).stages.items():
+                        result.setdefault((kind, stage.text), f"{name} {path} {kind}")
+    return result
