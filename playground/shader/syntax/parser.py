@@ -188,13 +188,21 @@ class _Parser:
                     return index + 1
         return self._count
 
-    def _skip(self) -> None:
-        """Go behind the next semicolon or block of this depth, or to the brace that closes this depth."""
-        depth = 0
-        while self._at < self._count:
-            text = self._texts[self._at]
-            if depth <= 0 and self._begins_function():
+    def _recover(self, before: int) -> None:
+        """Go on after an error in what began at ``before``.
+
+        That is at the next function, behind the next semicolon or block of this depth, or at the brace that
+        closes this depth.
+        """
+        for at in range(before + 1, self._at):
+            if self._begins_function(at):
+                self._at = at
                 return
+        if self._at == before and not self._begins_function(before):
+            self._at += 1
+        depth = 0
+        while self._at < self._count and not self._begins_function(self._at):
+            text = self._texts[self._at]
             if text in _OPENING:
                 depth += 1
             elif text in _CLOSING:
@@ -223,10 +231,8 @@ class _Parser:
             except (_Unexpected, RecursionError) as error:
                 if isinstance(error, RecursionError):
                     self.errors.append(ParseError(self._at, "nested too deeply"))
-                if self._at == before:
-                    self._at += 1
-                self._skip()
-                if self._texts[self._at] == "}":
+                self._recover(before)
+                if self._at == before or self._texts[self._at] == "}":
                     self._at += 1
         return nodes
 
@@ -422,20 +428,18 @@ class _Parser:
                 return Block(first, self._at, statements)
             before = self._at
             try:
-                if self._begins_function():
+                if self._begins_function(before):
                     self.errors.append(
                         ParseError(first, "this bracket is not closed before the next function")
                     )
                     return Block(first, self._at, statements)
                 statements.append(self._statement())
             except _Unexpected:
-                if self._at == before and not self._begins_function():
-                    self._at += 1
-                self._skip()
+                self._recover(before)
 
-    def _begins_function(self) -> bool:
+    def _begins_function(self, at: int) -> bool:
         """Return whether a function is defined here: a bracket before it was never closed."""
-        at, texts, kinds = self._at, self._texts, self._kinds
+        texts, kinds = self._texts, self._kinds
         if texts[at + 2] != "(" or kinds[at] != "word" or kinds[at + 1] != "word" or texts[at] in _KEYWORDS:
             return False
         behind = self._behind(at + 2)

@@ -14,11 +14,15 @@ from playground.memo import TEXTS
 from playground.shader.syntax.nodes import (
     Block,
     Call,
+    Case,
     Declaration,
+    Do,
+    Expression,
     For,
     Function,
     If,
     InterfaceBlock,
+    Jump,
     Name,
     Node,
     Struct,
@@ -26,6 +30,7 @@ from playground.shader.syntax.nodes import (
     Type,
     While,
     children,
+    walk,
 )
 from playground.shader.syntax.parser import Tree, parse
 
@@ -254,10 +259,6 @@ class _Resolver:
 
     def _visit(self, node: Node) -> None:
         match node:
-            case Name():
-                self._use(node.first, node.name)
-            case Call():
-                self._call(node)
             case Declaration():
                 self._declaration(node)
             case Block():
@@ -273,12 +274,7 @@ class _Resolver:
                 self._inside(node.body)
                 self._scopes.pop()
             case If():
-                self._scopes.append({})
-                self._visit(node.condition)
-                self._inside(node.yes)
-                if node.no is not None:
-                    self._inside(node.no)
-                self._scopes.pop()
+                self._if(node)
             case Switch():
                 self._visit(node.value)
                 self._inside(node.body)
@@ -286,8 +282,30 @@ class _Resolver:
                 around = self._function
                 self._function_definition(node)
                 self._function = around
-            case _:
+            case Expression() | Jump() | Case() | Do():
                 self._each(children(node))
+            case _:
+                self._expression(node)
+
+    def _if(self, node: If) -> None:
+        depth = len(self._scopes)
+        following: Node | None = node
+        while isinstance(following, If):  # a loop: chains of else if may be longer than the stack is deep
+            self._scopes.append({})
+            self._visit(following.condition)
+            self._inside(following.yes)
+            following = following.no
+        if following is not None:
+            self._inside(following)
+        del self._scopes[depth:]
+
+    def _expression(self, node: Node) -> None:
+        """Note the names of an expression, which may be long: sums are as deep as they have terms."""
+        for part in walk(node):
+            if isinstance(part, Name):
+                self._use(part.first, part.name)
+            elif isinstance(part, Call):
+                self._call(part)
 
     def _inside(self, node: Node) -> None:
         """Visit a statement in a scope of its own."""
@@ -296,7 +314,6 @@ class _Resolver:
         self._scopes.pop()
 
     def _call(self, node: Call) -> None:
-        self._each(node.arrays)
         known = self._look_up(node.name)
         functions = [one for one in known if one.kind == "function"]
         if functions:
@@ -306,4 +323,3 @@ class _Resolver:
         self._refer(node.at, known[0] if known else None, tuple(known[1:]))
         self.symbols.callees[node] = tuple(functions)
         self.symbols.calls.append(CallSite(node, tuple(functions), self._function))
-        self._each(node.arguments)
