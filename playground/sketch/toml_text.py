@@ -1,8 +1,8 @@
 """A TOML text: the line of each key, the span of each value, and changes of single values.
 
 The standard reader gives a line for a syntax error only; a wrong value deserves one too, and a value
-that is saved is overwritten at its position. ``TomlPlaces`` reads any text, also one that is not TOML: what
-comes before its first mistake has positions.
+that is saved is overwritten at its position. ``TomlPlaces`` reads any text, also one that is not TOML: it
+goes on behind the line at which what it cannot read begins.
 
 ``put``, ``drop`` and ``append`` change the text only there: comments, order, spaces, line endings and the
 way that tables are written stay. They take a text that is TOML already; nothing is checked here.
@@ -13,7 +13,6 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -35,6 +34,7 @@ _TOKEN = re.compile(
     re.DOTALL,
 )
 _MAX_DEPTH = 40
+_MAX_UNCLOSED = 20  # lines with a bracket that is not closed: each is looked for up to the end
 
 
 class Header(NamedTuple):
@@ -62,7 +62,7 @@ class _Token(NamedTuple):
 
 
 class _End(Exception):
-    """The text is at its end, or no longer TOML."""
+    """What is read here is no TOML, or not whole."""
 
 
 class TomlPlaces:
@@ -76,8 +76,7 @@ class TomlPlaces:
         self._lists: dict[KeyPath, int] = {}  # how many tables each [[list]] has, less one
         self._tokens = _tokens(text)
         self._at = 0
-        with suppress(_End):
-            self._document()
+        self._document()
 
     def line(self, position: KeyPath) -> int:
         """Return the line of a place, or of the nearest table around it; 0 if none is known.
@@ -132,13 +131,21 @@ class TomlPlaces:
 
     def _document(self) -> None:
         table: KeyPath = ()
-        while self._now.text:
-            if self._now.text == "\n":
-                self._step()
-            elif self._now.text == "[":
-                table = self._header()
-            else:
-                self.bodies[table] = self._pair(table, depth=0)
+        unclosed = 0
+        while self._now.text and unclosed < _MAX_UNCLOSED:
+            begins = self._at
+            try:
+                if self._now.text == "\n":
+                    self._step()
+                elif self._now.text == "[":
+                    table = self._header()
+                else:
+                    self.bodies[table] = self._pair(table, depth=0)
+            except _End:
+                unclosed += not self._now.text
+                self._at = begins
+                while self._now.text not in ("", "\n"):
+                    self._at += 1
 
     def _header(self) -> KeyPath:
         first = self._now

@@ -812,9 +812,14 @@ def test_a_place_without_a_line_has_that_of_what_is_around_it():
         "a = [}",
     ],
 )
-def test_what_is_not_toml_gives_what_there_is(text):
-    places = TomlPlaces("first = 1\n" + text)
+def test_what_is_not_toml_loses_its_own_line_alone(text):
+    text = f"first = 1\n{text}\n[[pass]]\nuse = 'x'\n"
+    places = TomlPlaces(text)
     assert places.lines["first",] == 1 and places.pairs["first",].value == len("first = ")
+    if not text.split("\n")[1].startswith("[[pass]"):  # where the line is the beginning of a header
+        [place] = [path for path in places.pairs if path[0] == "pass"]
+        pair = places.pairs[place]
+        assert text[pair.key : pair.end] == "use = 'x'"
 
 
 @pytest.mark.slow
@@ -832,3 +837,4 @@ def test_any_text_ends_soon_and_raises_nothing(seed):
     TomlPlaces("a = " + "[" * 100_000)
     TomlPlaces("a = [" + "1, " * 100_000 + "]")
     TomlPlaces("a = {" + "b = {" * 50_000)
+    TomlPlaces("a = [\n" * 20_000)
