@@ -190,7 +190,7 @@ def test_a_long_chain_of_else_if_is_read() -> None:
 # ── places ───────────────────────────────────────────────────────────────────
 
 
-def test_a_token_of_a_macro_stands_for_its_call_and_knows_its_spelling() -> None:
+def test_a_token_of_a_macro_has_the_place_of_its_call() -> None:
     text = "#define SUM(a) (a + tail)\nfloat tail;\nfloat x = SUM(1.0) * 2.0;\n"
     tree = parse(text)
     symbols = resolve(tree)
