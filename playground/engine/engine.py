@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from hashlib import blake2b
 from pathlib import Path
@@ -18,10 +18,11 @@ from playground.engine.context import ContextInfo, open_context, release_context
 from playground.engine.frame import Frame, reduced
 from playground.engine.non_finite import NotFinite
 from playground.engine.plain_forms import warn
-from playground.engine.plan import drawn_size, most_iterations
+from playground.engine.plan import checked_seconds, drawn_size, most_iterations
 from playground.engine.planner import repeated_in
 from playground.engine.renderer import CACHE_BYTES, Renderer
 from playground.engine.textures import read_picture, read_texture
+from playground.engine.trace.model import MAX_EVENTS, Trace
 from playground.errors import SketchError
 from playground.sketch.load import opened
 from playground.sketch.model import DEFAULT_PICTURE, MAX_PICTURE_SIDE, Sketch
@@ -261,6 +262,67 @@ class Engine(Renderer):
         whole = most_iterations(plan.nodes)[repeated]
         for done in range(whole + 1):
             yield done, self.read(opened_sketch, repeated, size=size, time=time, steps={repeated: done})
+
+    def trace(
+        self,
+        sketch: Sketch | str | Path,
+        path: str,
+        *,
+        texel: tuple[int, int],
+        iteration: int | Sequence[int] | None = None,
+        function: str | None = None,
+        size: tuple[int, int] = DEFAULT_PICTURE,
+        time: float = 0.0,
+        values: Mapping[str, object] | None = None,
+        limit: int = MAX_EVENTS,
+    ) -> Trace:
+        """Return every value of one texel's run of a pass: by call, line and iteration.
+
+        ``path`` is ``pass[.inner…]``, its canonical form; ``texel`` is (column, row) from the south-west.
+        ``iteration`` is one of a pass that repeats or of the innermost loop around it, from 0, or a number
+        for each of them, the outermost first; without it the last. ``function``: None for those of the
+        kernel's own file, "all" for those that it includes as well (a large text takes seconds to compile),
+        or the name of one. ``values`` of parameters, by path; ``size`` and ``time`` as in ``render``. At most
+        ``limit`` values are recorded, see ``Trace.is_complete``.
+
+        It is drawn by the fragment driver, on OpenGL 3.3, and compared with the texel itself, see
+        ``Trace.is_exact``: a driver may round a recorded sum otherwise. What is drawn later stays the same.
+
+            with playground.headless() as engine:
+                trace = engine.trace("l_dot_n", "product", texel=(10, 20))
+                for event in trace.events:
+                    print(event.line, event.name, event.value)
+
+        Raises ``ParameterError`` for a texel or an iteration outside, with what there is, and for a function
+        that the kernel does not have; ``SketchError`` for a pass that is none, or has no fragment shader;
+        ``ShaderError`` for a text that cannot be traced.
+        """
+        opened_sketch = opened(sketch).with_values(values or {})
+        plan = self.tracer.plan(opened_sketch, path, drawn_size(opened_sketch, size), checked_seconds(time))
+        return self.tracer.trace(plan, path, texel, iteration, function, limit)
+
+    def trace_frame(
+        self,
+        path: str,
+        *,
+        texel: tuple[int, int],
+        iteration: int | Sequence[int] | None = None,
+        function: str | None = None,
+        limit: int = MAX_EVENTS,
+    ) -> Trace:
+        """Return a trace of a pass of the last frame as it was drawn; arguments and errors as ``trace``.
+
+            with playground.headless() as engine:
+                engine.render("l_dot_n", size=(64, 36))
+                print(engine.trace_frame("product", texel=(10, 20)).texel_values)
+
+        Raises ``SketchError`` before the first frame.
+        """
+        last = self.record.plan
+        if last is None:
+            raise SketchError("nothing was drawn whose passes could be traced; draw a frame first")
+        plan = self.tracer.plan(last.sketch, path, last.frame_size, last.time, last.steps)
+        return self.tracer.trace(plan, path, texel, iteration, function, limit)
 
     def not_finite(self) -> NotFinite | None:
         """Return the first number that is not finite among what the last frame was made from, if any.

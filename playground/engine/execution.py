@@ -20,7 +20,7 @@ from playground.engine.cache_keys import Keys, StepKey
 from playground.engine.gl_calls import Timer
 from playground.engine.loops import LoopState, Replay, iteration_of, replay_of
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, sources_of, walk
-from playground.engine.results import UNWIRED, Cached, Result, Wired, started
+from playground.engine.results import UNWIRED, Cached, Pool, Result, Wired, started
 from playground.engine.runner import Runner
 from playground.engine.unfinished import Interruption
 from playground.errors import OpenGLFault
@@ -419,6 +419,71 @@ class Execution:
             if texture is not None and ref.path in results:
                 self.runner.kernels.copy_texture(results[ref.path].textures[ref.output], texture)
         return results
+
+
+class Visited(Exception):
+    """The run that was looked for has come, and the rest need not."""
+
+
+class Search(Execution):
+    """Runs the loops around one step again, from their first iteration to one run of the step.
+
+    Nothing of it goes into the cache or a frame's record. ``results`` are those of the frame's steps that
+    change with no loop, ``visit`` is called with the step, its inputs and where it is in the loops; its
+    textures are the loops', which release them.
+    """
+
+    def __init__(
+        self,
+        plan: Plan,
+        keys: Keys,
+        cache: Cache,
+        runner: Runner,
+        results: Mapping[str, Result],
+        visit: Callable[[Step, Mapping[str, Wired], LoopIteration | None], None],
+    ) -> None:
+        interruption = Interruption(runner.ctx.finish, None, None)
+        super().__init__(FrameRecord(plan, keys), cache, runner, interruption=interruption)
+        self.results = dict(results)
+        self._done = {node for node, loops in keys.changes.items() if not loops}
+        self._visit = visit
+        self._target: tuple[str, dict[str, int]] = ("", {})
+
+    def find(self, path: str, loops: Sequence[LoopStep], iterations: Sequence[int]) -> bool:
+        """Visit the run of a step in some iteration of each loop around it, the outermost first.
+
+        Return whether there was one.
+        """
+        self._target = path, {loop.path: number for loop, number in zip(loops, iterations, strict=True)}
+        try:
+            with LoopState(loops[0], Cached({}), self.runner.pool) as state:
+                self._run_loop(state, {}, {})
+                _give(self.runner.pool, state.take())
+        except Visited:
+            return True
+        return False
+
+    def _run_step(
+        self,
+        step: Step,
+        inputs: Mapping[str, Wired],
+        around: LoopIteration | None,
+        start: Result | None,
+    ) -> Result:
+        path, iterations = self._target
+        at = all(self._states[loop].iterations == number for loop, number in iterations.items())
+        if step.path == path and at:
+            self._visit(step, inputs, around)
+            raise Visited
+        return super()._run_step(step, inputs, around, start)
+
+    def _replay_of(self, loop: LoopStep, fed: Mapping[Fed, Wired]) -> Replay | None:
+        return None  # each run of each step is looked at
+
+
+def _give(pool: Pool, results: Mapping[str, Result]) -> None:
+    for result in {id(result): result for result in results.values()}.values():
+        pool.give(result)
 
 
 def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode], plan: Plan) -> list[str]:

@@ -148,7 +148,7 @@ class Kernels:
         if start is not None and start.settled:
             start.iterations = step.repeat
             return start
-        state = self._initial(step, inputs) if start is None else dict(start.textures)
+        state = self.initial(step, inputs) if start is None else dict(start.textures)
         if step.repeat == 0:
             return self._untouched(step, state)
         if stage.first is not None:
@@ -245,9 +245,29 @@ class Kernels:
         """
         kernel = step.kernel
         driver = COMPUTE if isinstance(kernel, PlainCompute) else FRAGMENT
-        foreign = kernel if isinstance(kernel, ForeignShader) else None
         program = self.programs.get(kernel, driver)
-        unit = 0
+        self.bind_plain(program, step, inputs, uniforms, around, usual)
+        result = self.empty(step)
+        if isinstance(kernel, PlainCompute):
+            self.images(result, read=True)
+            program.run(-(-step.size[0] // kernel.local[0]), -(-step.size[1] // kernel.local[1]))
+            return result
+        result.framebuffer(self.ctx).use()
+        program.fill(vertices_of(kernel))
+        return result
+
+    def bind_plain(
+        self,
+        program: Program,
+        step: Step,
+        inputs: Mapping[str, Wired],
+        uniforms: Mapping[str, Any],
+        around: LoopIteration | None,
+        usual: Mapping[str, tuple[float, ...]],
+    ) -> None:
+        """Set all that a plain shader's program reads; arguments as those of ``plain``."""
+        kernel, unit = step.kernel, 0
+        foreign = isinstance(kernel, ForeignShader)
         sizes: dict[str, tuple[int, int, int]] = {}  # [texels] of what each sampler reads
         for parameter in kernel.parameters:
             value = step.values[parameter.name]
@@ -284,14 +304,6 @@ class Kernels:
                 if element is not None:
                     readable, _ = self.binder.shaped(element, inputs)
                 unit = self.binder.unit(unit, readable, element.sampling if element else Sampling())
-        result = self.empty(step)
-        if isinstance(kernel, PlainCompute):
-            self.images(result, read=True)
-            program.run(-(-step.size[0] // kernel.local[0]), -(-step.size[1] // kernel.local[1]))
-            return result
-        result.framebuffer(self.ctx).use()
-        program.fill(6 if foreign and foreign.vertex_source else 3)
-        return result
 
     # ── iterations ───────────────────────────────────────────────────────────
 
@@ -307,7 +319,7 @@ class Kernels:
         around: LoopIteration | None,
     ) -> Result:
         iteration = start.iterations if start else 0
-        at_once = 1 if kernel.at_once == "1" else _at_once(step, kernel)
+        at_once = self.at_once(step)
         # Where there is something to begin with, texels off the lattice count as well.
         lattice = kernel.fills_lattice and driver == FRAGMENT and not state
         shift = 0
@@ -376,6 +388,17 @@ class Kernels:
         if shift:
             self.ctx.viewport = (0, 0, width, height)
 
+    def at_once(self, step: Step) -> int:
+        """Return how many iterations of a kernel run at once."""
+        kernel = step.kernel
+        assert isinstance(kernel, TexelKernel)
+        if kernel.at_once == "1":
+            return 1
+        try:
+            return max(expressions.evaluate(kernel.at_once, numbers_of(step)), 1)
+        except ExpressionError as error:
+            raise kernel.error(f"pass '{step.path}': at_once {error}") from None
+
     def _in_place(
         self,
         step: Step,
@@ -400,7 +423,7 @@ class Kernels:
         result.iterations = step.repeat
         return result
 
-    def _initial(self, step: Step, inputs: Mapping[str, Wired]) -> dict[str, moderngl.Texture]:
+    def initial(self, step: Step, inputs: Mapping[str, Wired]) -> dict[str, moderngl.Texture]:
         """Return the state before the first iteration, by output; what is missing is zero."""
         textures: dict[str, moderngl.Texture] = {}
         for name, output in initial_names(step.kernel).items():
@@ -435,6 +458,11 @@ class Kernels:
             result.textures[output.name].bind_to_image(unit, read=read, write=True)
 
 
+def vertices_of(kernel: Kernel) -> int:
+    """Return how many vertices the triangles have that a shader is drawn with over the whole target."""
+    return 6 if isinstance(kernel, ForeignShader) and kernel.vertex_source else 3
+
+
 def usual_of(kernel: Kernel, values: Mapping[str, tuple[float, ...]]) -> dict[str, tuple[float, ...]]:
     """Return those of the usual uniforms that a plain shader's text names, by meaning."""
     return {meaning: values[meaning] for _, meaning in kernel.usual if meaning in values}
@@ -443,14 +471,6 @@ def usual_of(kernel: Kernel, values: Mapping[str, tuple[float, ...]]) -> dict[st
 def _shares(whole: tuple[int, int], *pairs: tuple[int, int]) -> tuple[float, ...]:
     """Return pairs of numbers as shares of a whole pair."""
     return tuple(number / side for pair in pairs for number, side in zip(pair, whole, strict=True))
-
-
-def _at_once(step: Step, kernel: TexelKernel) -> int:
-    """Return how many iterations of a kernel run at once."""
-    try:
-        return max(expressions.evaluate(kernel.at_once, numbers_of(step)), 1)
-    except ExpressionError as error:
-        raise kernel.error(f"pass '{step.path}': at_once {error}") from None
 
 
 def _numbers(

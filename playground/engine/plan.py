@@ -41,6 +41,7 @@ class PlanRequest:
     ref: str = ""  # a texture, ``pass[.inner…][:output]``; "" for the picture
     interpolated: bool | None = None
     largest: int = MAX_SIDE
+    canonical: str = ""  # path of a leaf that no fast variant replaces, nor a technique around it
 
     @property
     def fills(self) -> bool:

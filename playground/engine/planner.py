@@ -66,7 +66,7 @@ def make_plan(sketch: Sketch, request: PlanRequest) -> Plan:
 def planned(sketch: Sketch, request: PlanRequest) -> Plan:
     """Return what ``make_plan`` does, made of the last plan of the same graph as far as that still holds."""
     request = _checked(sketch, request)
-    variants, steps = tuple(request.variants), tuple(request.steps.items())
+    variants, steps = (*request.variants, request.canonical), tuple(request.steps.items())
     asked = request.frame_size, variants, steps, request.ref, request.fills, _varies(sketch)
     key = (planned, id(sketch.graph), sketch.folder, sketch.plain, sketch.terrain, asked)
     return PLANS.put(key, _made(sketch, request, PLANS.get(key)), 1, sketch.graph)  # type: ignore[no-any-return]
@@ -115,6 +115,8 @@ def _varies(sketch: Sketch) -> bool:
 def _made(sketch: Sketch, request: PlanRequest, last: Plan | None) -> Plan:
     """Make a plan; ``last`` is one of the same graph for the same request, at any time."""
     varies, sketch = _varies(sketch), sketch.at(request.time)
+    names = request.canonical.split(".") if request.canonical else []
+    around = [".".join(names[: count + 1]) for count in range(len(names))]
 
     def flat(refused: Iterable[str]) -> Flat:
         return substitute_variants(
@@ -122,7 +124,7 @@ def _made(sketch: Sketch, request: PlanRequest, last: Plan | None) -> Plan:
             () if sketch.plain else request.variants,
             ref=request.ref,
             stopped=tuple(request.steps),
-            refused=tuple(refused),
+            refused=(*refused, *around),
         )
 
     if last is not None:

@@ -182,6 +182,10 @@ class Programs:
             _log.debug("compiled %s (%s) in %.0f ms", shown(kernel.path), driver, milliseconds)
         return self._used(text)
 
+    def wrapped(self, kernel: Kernel, driver: str, choices: Choices = ()) -> Wrapped:
+        """Return the stages that ``get`` compiles."""
+        return _wrapped(kernel, driver, self.ctx.version_code, choices, self.write)[1]
+
     def _compiled(self, plain: Wrapped, wrapped: Wrapped, choices: Choices) -> Any:
         """Compile a text; where functions or values are written into it and that fails, without.
 

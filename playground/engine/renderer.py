@@ -56,6 +56,8 @@ from playground.sketch.variants import compiled_text
 if TYPE_CHECKING:
     import moderngl
 
+    from playground.engine.trace.tracer import Tracer
+
 _log = logging.getLogger(__name__)
 
 CACHE_BYTES = 768 * 2**20
@@ -114,6 +116,7 @@ class Renderer:
         self._hasher = PictureHasher()
         self._finite_check = FiniteCheck(self)
         self._timer: Timer | None = None
+        self._tracer: Tracer | None = None
         self._context = _ContextUse(self, owns=owns_context)
 
     @property
@@ -140,6 +143,8 @@ class Renderer:
         self.runner.pool.clear()
         self.runner.release()
         self._timer = None
+        if self._tracer is not None:
+            self._tracer.release()
         self._context.release()
 
     def _log_counts(self) -> None:
@@ -162,6 +167,7 @@ class Renderer:
         interpolated: bool | None = None,
         *,
         in_parts: bool = False,
+        canonical: str = "",
     ) -> Plan:
         """Make a sketch, or that of a name or path, concrete for this engine; see ``PlanRequest``.
 
@@ -171,7 +177,8 @@ class Renderer:
         opened_sketch = opened(sketch)
         samples = 0 if in_parts else min(opened_sketch.picture.samples, self._info.max_samples)
         kinds = self.plain_forms.kinds if samples == 1 else self.plain_forms.kinds_without_draws
-        return planned(opened_sketch, PlanRequest(size, time, kinds, steps or {}, ref, interpolated, largest))
+        request = PlanRequest(size, time, kinds, steps or {}, ref, interpolated, largest, canonical)
+        return planned(opened_sketch, request)
 
     def draw_window(
         self,
@@ -227,6 +234,15 @@ class Renderer:
     def texture_of(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture of a plan needs, and return it; it lives until the next frame."""
         return self._texture(plan, ref)
+
+    @property
+    def tracer(self) -> Tracer:
+        """What traces steps of frames, made when it is first asked for."""
+        if self._tracer is None:
+            from playground.engine.trace.tracer import Tracer
+
+            self._tracer = Tracer(self)
+        return self._tracer
 
     def drawn(self) -> str:
         """Return a hash of what the last frame's picture was drawn from; "" before the first.

@@ -163,6 +163,12 @@ def texel_bytes(values: NDArray[Any], dtype: np.dtype[Any]) -> bytes:
         return np.ascontiguousarray(values.astype(dtype, copy=False)).tobytes()
 
 
+def floats_in(form: str, texels: bytes) -> NDArray[np.float32]:
+    """Return the numbers in texels of a format such as ``rg16f``, as ``read_texture`` has them."""
+    raw: NDArray[Any] = np.frombuffer(texels, _NUMPY[split_format(form)[1]])
+    return _as_floats(raw)
+
+
 def read_texture(texture: moderngl.Texture) -> NDArray[np.float32]:
     """Read a texture as float32, (ny, nx) or (ny, nx, components), row 0 south.
 

@@ -1,0 +1,543 @@
+"""Trace steps of an engine's frames: draw what records behind the picture, and compare its texel.
+
+A traced shader is bound as the step's own is, with its uniforms, textures and samplers, by the fragment
+driver; loops around it run again up to the iteration. Nothing that is drawn afterwards changes.
+
+A first trace compiles: some 100 ms, and seconds for large texts where all functions are recorded. Another
+texel of the same step and iteration takes 1 to 2 ms. ``Tracer.texts`` is what will be compiled, for the
+sandbox (``TryTexts``) to compile before: driver and sandbox share the cache of shaders on disk.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from numbers import Integral
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.engine.execution import FrameRecord, Search
+from playground.engine.kernels import usual_of, vertices_of
+from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step
+from playground.engine.programs import Program
+from playground.engine.results import Result, Wired
+from playground.engine.textures import drain, floats_in, make_framebuffer, release_framebuffer, split_format
+from playground.engine.trace.instrument import ALL, Traced, functions_of, instrument
+from playground.engine.trace.model import MAX_EVENTS, Leaf, Trace, rebuild
+from playground.errors import ParameterError, SketchError, nearest
+from playground.memo import GRAPHS, Memo
+from playground.shader.own_shaders import TRIANGLE
+from playground.shader.wrap import FRAGMENT, ShaderStage, Wrapped
+from playground.sketch.flat import Fed, Ref
+from playground.sketch.flatten import flatten
+from playground.sketch.model import CpuSource, Draw, Kernel, PlainFragment, Sketch, TexelKernel
+
+if TYPE_CHECKING:
+    import moderngl
+
+    from playground.engine.renderer import Renderer
+
+_TRACED = (TexelKernel, PlainFragment)
+_MAX_PROGRAMS = 32
+_FIRST_SIDE = 16  # of a target whose number of events nobody knows
+_MAX_SIDE = 512
+
+
+@dataclass(eq=False)
+class _Run:
+    """One run of a step: all that its shader is bound to, ready to be run again for any texel."""
+
+    step: Step
+    inputs: Mapping[str, Wired]
+    uniforms: Mapping[str, Any]
+    around: LoopIteration | None
+    usual: Mapping[str, tuple[float, ...]]
+    iteration: tuple[int, ...]  # of the loops and the repeat
+    own_iteration: int  # of the kernel's repeat
+    state: Mapping[str, moderngl.Texture]  # what it reads of the iteration before
+    result: Result | None  # what it gave in the picture; None: nothing has that
+    owned: list[Result] = field(default_factory=list)  # textures that are its own
+
+
+@dataclass(eq=False)
+class _Compiled:
+    """A traced shader, compiled."""
+
+    traced: Traced
+    program: Program
+    count: int = 0  # leaves of the last run
+
+
+class Tracer:
+    """Traces the steps of one renderer's frames, and keeps compiled texts and the last step's run."""
+
+    def __init__(self, renderer: Renderer) -> None:
+        self._renderer = renderer
+        self._ctx = renderer._ctx
+        self._programs: Memo[tuple[str, str], _Compiled] = Memo(
+            "traced programs", _MAX_PROGRAMS, dropped=lambda _, compiled: compiled.program.release()
+        )
+        # What the last trace ran on, and of which frame that is.
+        self._run: tuple[Plan, str, tuple[int, ...], FrameRecord, _Run] | None = None
+        self._targets: dict[tuple[tuple[str, ...], int], _Target] = {}
+
+    def release(self) -> None:
+        """Release programs and textures."""
+        self._forget_run()
+        self._programs.clear()
+        for target in self._targets.values():
+            target.release()
+        self._targets.clear()
+
+    def plan(
+        self,
+        sketch: Sketch,
+        path: str,
+        size: tuple[int, int],
+        time: float,
+        steps: Mapping[str, int] | None = None,
+    ) -> Plan:
+        """Return the plan by which a pass is traced, in its canonical form: the last frame's where it has it.
+
+        ``size`` in pixels, supersampling included, ``time`` in seconds, ``steps`` as in ``Engine.render``.
+        Raises ``SketchError`` for a path that is no pass, with the nearest.
+        """
+        flat, last = flatten(sketch), self._renderer.record.plan
+        is_canonical = path.partition(":")[0] in flat.outputs
+        leaf = flat.ref(path, sketch.name).path if is_canonical else ""
+        if last is not None and (last.frame_size, last.time, last.steps) == (size, time, steps or {}):
+            now = sketch.at(time)
+            step = last.step(leaf or path.partition(":")[0])
+            has_kernel = step is not None and isinstance(step.kernel, _TRACED)
+            # The eye may have been raised over the terrain.
+            if has_kernel and last.sketch in (now, now.with_camera(last.sketch.camera)):
+                return last
+        return self._renderer.plan(sketch, size, time, steps, path, canonical=leaf)
+
+    def trace(
+        self,
+        plan: Plan,
+        path: str,
+        texel: tuple[int, int],
+        iteration: int | Sequence[int] | None = None,
+        function: str | None = None,
+        limit: int = MAX_EVENTS,
+    ) -> Trace:
+        """Return what one texel's run of a step of a plan recorded; see ``Engine.trace``."""
+        ref = plan.flat.ref(path, plan.sketch.name)
+        step, loops = self._step(plan, ref)
+        texel = _checked_texel(step, texel)
+        renderer = self._renderer
+        runs = renderer.runs.copy()
+        with renderer._supposing(plan), renderer.borrowed():
+            try:
+                run = self._run_of(plan, step, loops, ref, iteration)
+                self._ctx.disable(renderer.runner._of_draws)
+                return self._traced(run, texel, function, limit)
+            finally:
+                renderer.runs = runs
+                drain(self._ctx)
+
+    def texts(self, plan: Plan, path: str, function: str | None = None) -> tuple[str, str]:
+        """Return the vertex and the fragment shader that a trace of a step compiles, for the sandbox.
+
+        Raises as ``trace``.
+        """
+        ref = plan.flat.ref(path, plan.sketch.name)
+        step, loops = self._step(plan, ref)
+        renderer = self._renderer
+        with renderer._supposing(plan), renderer.borrowed():
+            run = self._run_of(plan, step, loops, ref, None)
+            traced = self._instrumented(run, function)[1]
+        return _vertex_of(traced), traced.text
+
+    # ── what is traced ───────────────────────────────────────────────────────
+
+    def _step(self, plan: Plan, ref: Ref) -> tuple[Step, tuple[LoopStep, ...]]:
+        """Return a step of a plan and the loops around it, outermost first."""
+        found = _with_loops(plan.nodes, ref.path)
+        if found is None:
+            raise SketchError(f"pass '{ref.path}' does not run in sketch {plan.sketch.name}")
+        step, _ = found
+        kernel = step.kernel
+        if isinstance(kernel, _TRACED):
+            return found
+        if isinstance(kernel, CpuSource):
+            reason = "a source, which the processor makes"
+        elif isinstance(kernel, Draw):
+            reason = "a draw of a mesh"
+        else:
+            reason = "a compute shader"
+        traceable = [s.path for s in plan.walk() if isinstance(s.kernel, _TRACED)]
+        hint = nearest(ref.path, traceable)
+        raise SketchError(f"pass '{ref.path}' is {reason}: no fragment shader to trace{hint}")
+
+    def _run_of(
+        self,
+        plan: Plan,
+        step: Step,
+        loops: tuple[LoopStep, ...],
+        ref: Ref,
+        iteration: int | Sequence[int] | None,
+    ) -> _Run:
+        """Return the run of a step in an iteration: that of the last trace where it is the same."""
+        renderer = self._renderer
+        record = self._record_of(plan, ref)
+        changing = [loop for loop in loops if loop.path in record.keys.changes[id(step)]]
+        counts = [loop.repeat for loop in changing]
+        has_repeat = isinstance(step.kernel, TexelKernel) and step.kernel.repeat != "1"
+        counts += [step.repeat] if has_repeat else []
+        at = _checked_iteration(step, counts, iteration)
+        if self._run is not None:
+            plan_before, path, at_before, record_before, run = self._run
+            if plan_before is plan and path == step.path and at_before == at and record_before is record:
+                return run
+        self._forget_run()
+        runner = renderer.runner
+        results = dict(record.results)
+        visited: list[_Run] = []
+
+        def visit(step: Step, inputs: Mapping[str, Wired], around: LoopIteration | None) -> None:
+            frame = around.frame if around is not None else None
+            owned: list[Result] = []
+            own = {id(result) for result in results.values()}
+            copies: dict[int, Result] = {}
+
+            def kept(wired: Wired) -> Wired:
+                if wired.result is None or id(wired.result) in own:
+                    return wired
+                if id(wired.result) not in copies:
+                    copies[id(wired.result)] = runner.kernels.copied(wired.result)
+                    owned.append(copies[id(wired.result)])
+                copy = copies[id(wired.result)]
+                return Wired(copy, copy.textures[wired.output], wired.output)
+
+            inputs = {name: kept(wired) for name, wired in inputs.items()}
+            uniforms = runner.given_for(step, frame)
+            usual = dict(usual_of(step.kernel, runner.frame_uniforms(step, frame)))
+            run = _Run(step, inputs, uniforms, around, usual, at, 0, {}, None, owned)
+            visited.append(run)
+
+        if changing:
+            search = Search(plan, record.keys, renderer.cache, runner, results, visit)
+            search.find(step.path, changing, at[: len(changing)])
+        else:
+            inputs = {name: _wired(source, results) for name, source in step.inputs}
+            visit(step, inputs, None)
+        run = visited[0]
+        if has_repeat:
+            self._go_to_iteration(run, at[-1])
+        if _is_last(at, counts) and renderer.runner.driver_for(step) == FRAGMENT:
+            run.result = results.get(step.path)
+        self._run = plan, step.path, at, record, run
+        return run
+
+    def _record_of(self, plan: Plan, ref: Ref) -> FrameRecord:
+        """Return the record of a frame of a plan in which all ran that a texture needs."""
+        renderer = self._renderer
+        before = renderer.record
+        if before.plan is plan and ref.path in before.results:
+            return before
+        if self._run is not None and self._run[0] is plan and self._run[3].plan is plan:
+            return self._run[3]
+        keeps, renderer.options.keeps = renderer.options.keeps, True
+        try:
+            renderer._texture(plan, ref)
+            record = renderer.record
+            if before.plan is not None:
+                renderer.recall(before.plan)
+        finally:
+            renderer.options.keeps = keeps
+            renderer.record = before
+        renderer.runner.set_frame(plan)
+        return record
+
+    def _go_to_iteration(self, run: _Run, iteration: int) -> None:
+        """Give a run of a kernel that repeats the state before one of its iterations."""
+        kernels, step = self._renderer.runner.kernels, run.step
+        assert isinstance(step.kernel, TexelKernel)
+        at_once = kernels.at_once(step)
+        first = iteration - iteration % at_once
+        run.own_iteration = first
+        if first == 0:
+            run.state = kernels.initial(step, run.inputs)
+            return
+        part = replace(step, repeat=first)
+        start = kernels.run(part, FRAGMENT, run.inputs, run.uniforms, run.around, None)
+        run.owned.append(start)
+        run.state = dict(start.textures)
+
+    def _forget_run(self) -> None:
+        if self._run is not None:
+            for result in self._run[4].owned:
+                self._renderer.runner.pool.give(result)
+            self._run = None
+
+    # ── drawing ──────────────────────────────────────────────────────────────
+
+    def _traced(self, run: _Run, texel: tuple[int, int], function: str | None, limit: int) -> Trace:
+        stage, traced = self._instrumented(run, function)
+        compiled = self._compiled(traced, stage.source)
+        real = self._real_texel(run, texel)
+        self._bind(compiled.program, run)
+        leaves, own, count, is_gone = self._recorded(run, compiled, texel, limit)
+        calls, events = rebuild(traced.places, traced.structs, leaves)
+        formats = [output.format for output in run.step.kernel.outputs]
+        names = [output.name for output in run.step.kernel.outputs]
+        return Trace(
+            step=run.step.path,
+            texel=texel,
+            iteration=run.iteration,
+            outputs={} if is_gone else _values(names, formats, own),
+            texel_values=_values(names, formats, real),
+            is_exact=is_gone or own == real,
+            calls=calls,
+            events=events,
+            is_complete=len(leaves) == count,
+            count=count,
+            functions=traced.functions,
+            others=traced.others,
+            files=_files_of(stage),
+            is_discarded=is_gone,
+        )
+
+    def _stages(self, run: _Run) -> tuple[Wrapped, Sequence[tuple[str, int]]]:
+        """Return what the driver compiles of a run's step, and what is chosen in it."""
+        runner, step = self._renderer.runner, run.step
+        if not isinstance(step.kernel, TexelKernel):
+            return runner.programs.wrapped(step.kernel, FRAGMENT), ()
+        stage = runner.tuning.stage(step, run.inputs, FRAGMENT, in_loop=run.around is not None)
+        return runner.programs.wrapped(step.kernel, FRAGMENT, stage.choices), stage.choices
+
+    def _instrumented(self, run: _Run, function: str | None) -> tuple[ShaderStage, Traced]:
+        wrapped, _ = self._stages(run)
+        stage = wrapped.stages["fragment"]
+        try:
+            return stage, _instrumented(stage, function or "")
+        except KeyError:
+            names = functions_of(stage)
+            hint = nearest(str(function), names) or f"; expected '{ALL}' or one of {', '.join(names)}"
+            message = f"pass '{run.step.path}' has no function '{function}'{hint}"
+            raise ParameterError(message) from None
+
+    def _compiled(self, traced: Traced, source: Any) -> _Compiled:
+        key = _vertex_of(traced), traced.text
+        compiled: _Compiled | None = self._programs.get(key)
+        if compiled is None:
+            program = self._ctx.program(vertex_shader=key[0], fragment_shader=key[1])
+            compiled = self._programs.put(key, _Compiled(traced, Program(self._ctx, program)))
+        return compiled
+
+    def _bind(self, program: Program, run: _Run) -> None:
+        """Set all that a run's shader reads."""
+        runner, step = self._renderer.runner, run.step
+        kernel, kernels = step.kernel, runner.kernels
+        if not isinstance(kernel, TexelKernel):
+            kernels.bind_plain(program, step, run.inputs, run.uniforms, run.around, run.usual)
+            return
+        stage = runner.tuning.stage(step, run.inputs, FRAGMENT, in_loop=run.around is not None)
+        unit = kernels.binder.bind(program, step, run.uniforms, run.inputs, stage)
+        kernels.binder.previous(kernels.binder.previous_units(program, kernel, unit), run.state)
+        at_once = min(kernels.at_once(step), max(step.repeat - run.own_iteration, 1))
+        program.count(kernel.repeat, run.own_iteration, step.total, run.around, at_once)
+        program.set("k_previous_shift", 0)
+        program.set("k_shift", 0)
+
+    def _real_texel(self, run: _Run, texel: tuple[int, int]) -> list[bytes]:
+        """Return the bytes of a texel in each output, as the untraced shader gives it."""
+        ctx, runner, step = self._ctx, self._renderer.runner, run.step
+        if run.result is not None:
+            return _read_texel(run.result.framebuffer(ctx), step.kernel, texel)
+        _, choices = self._stages(run)
+        program = runner.programs.get(step.kernel, FRAGMENT, tuple(choices))
+        self._bind(program, run)
+        result = runner.pool.take(step.size, step.kernel.outputs)
+        try:
+            framebuffer = result.framebuffer(ctx)
+            framebuffer.use()
+            ctx.scissor = (texel[0] & ~1, texel[1] & ~1, 2, 2)
+            framebuffer.clear()
+            program.fill(vertices_of(step.kernel))
+            return _read_texel(framebuffer, step.kernel, texel)
+        finally:
+            ctx.scissor = None
+            runner.pool.give(result)
+
+    def _recorded(
+        self, run: _Run, compiled: _Compiled, texel: tuple[int, int], limit: int
+    ) -> tuple[list[Leaf], list[bytes], int, bool]:
+        """Return the leaves of a run, the bytes of its outputs, how many leaves it has, whether it ended."""
+        traced, program = compiled.traced, compiled.program
+        formats = tuple([output.format for output in run.step.kernel.outputs])
+        leaves: list[Leaf] = []
+        expected = min(max(compiled.count, 1), limit)
+        while True:
+            side = _FIRST_SIDE
+            while side * side < expected - len(leaves) and side < _MAX_SIDE:
+                side *= 2
+            target = self._target(formats, side * (2 if traced.quads else 1))
+            target.framebuffer.use()
+            program.set("k_trace_texel", texel)
+            program.set("k_trace_width", side)
+            program.set("k_trace_from", len(leaves))
+            program.fill()
+            bits, what, own = target.read(texel if traced.quads else None)
+            count, is_gone = int(what[0, 2]), bool(what[0, 3])
+            size = min(side * side, count - len(leaves), limit - len(leaves))
+            leaves += [
+                Leaf(place, code, tuple(bit))
+                for (place, code, _, _), bit in zip(what[:size].tolist(), bits[:size].tolist(), strict=True)
+            ]
+            compiled.count = count
+            if len(leaves) >= min(count, limit):
+                return leaves, own, count, is_gone
+            expected = min(count, limit)
+            if len(leaves) < _MAX_SIDE * _MAX_SIDE:
+                leaves.clear()  # a larger target has them all
+
+    def _target(self, formats: tuple[str, ...], side: int) -> _Target:
+        key = formats, side
+        if key not in self._targets:
+            self._targets[key] = _Target(self._ctx, formats, side)
+        return self._targets[key]
+
+
+class _Target:
+    """What a traced shader draws to: its own outputs, and two of the recording's."""
+
+    def __init__(self, ctx: moderngl.Context, formats: tuple[str, ...], side: int) -> None:
+        self.side = side
+        self.formats = [split_format(form) for form in formats]
+        self.textures = [ctx.texture((side, side), parts, dtype=dtype) for parts, dtype in self.formats]
+        self.textures += [ctx.texture((side, side), 4, dtype="u4") for _ in range(2)]
+        self.framebuffer = make_framebuffer(ctx, self.textures)
+
+    def read(self, quad: tuple[int, int] | None) -> tuple[NDArray[Any], NDArray[Any], list[bytes]]:
+        """Return bits and kinds of the leaves, and the outputs' bytes.
+
+        ``quad``: the texel whose lane of each quad is read.
+        """
+        count = len(self.formats)
+        arrays = []
+        for index in (count, count + 1):
+            data = self.framebuffer.read(components=4, attachment=index, alignment=1, dtype="u4")
+            array = np.frombuffer(data, np.uint32).reshape(self.side, self.side, 4)
+            if quad is not None:
+                array = array[quad[1] & 1 :: 2, quad[0] & 1 :: 2]
+            arrays.append(array.reshape(-1, 4))
+        x, y = (quad[0] & 1, quad[1] & 1) if quad is not None else (0, 0)
+        own = [
+            self.framebuffer.read((x, y, 1, 1), parts, attachment=index, alignment=1, dtype=dtype)
+            for index, (parts, dtype) in enumerate(self.formats)
+        ]
+        return arrays[0], arrays[1], own
+
+    def release(self) -> None:
+        """Release its framebuffer and textures."""
+        release_framebuffer(self.framebuffer)
+        for texture in self.textures:
+            texture.release()
+
+
+@GRAPHS.cached(identities=1)
+def _instrumented(stage: ShaderStage, functions: str) -> Traced:
+    return instrument(stage, functions)
+
+
+def _vertex_of(traced: Traced) -> str:
+    """Return the vertex shader that a traced fragment shader is drawn with, of its version."""
+    version = traced.text.partition("\n")[0]
+    return TRIANGLE.replace("#version 330", version)
+
+
+def _with_loops(nodes: Sequence[PlanNode], path: str) -> tuple[Step, tuple[LoopStep, ...]] | None:
+    for node in nodes:
+        if isinstance(node, LoopStep):
+            inside = _with_loops(node.body, path)
+            if inside is not None:
+                return inside[0], (node, *inside[1])
+        elif node.path == path:
+            return node, ()
+    return None
+
+
+def _wired(source: Ref | Fed | None, results: Mapping[str, Result]) -> Wired:
+    if not isinstance(source, Ref):
+        return Wired()
+    result = results[source.path]
+    return Wired(result, result.textures[source.output], source.output)
+
+
+def _checked_texel(step: Step, texel: object) -> tuple[int, int]:
+    """Return a texel inside of a step's textures, or raise ``ParameterError``."""
+    sides = tuple(texel) if isinstance(texel, Sequence) and not isinstance(texel, str) else ()
+    if len(sides) != 2 or not all(isinstance(n, Integral) and not isinstance(n, bool) for n in sides):
+        raise ParameterError(f"texel {texel!r}: expected two whole numbers, column and row")
+    (x, y), (width, height) = (int(sides[0]), int(sides[1])), step.size
+    if not (0 <= x < width and 0 <= y < height):
+        inside = f"0 to {width - 1} and 0 to {height - 1} were expected"
+        raise ParameterError(f"texel ({x}, {y}) of '{step.path}', {width} x {height} texels; {inside}")
+    return x, y
+
+
+def _checked_iteration(
+    step: Step, counts: Sequence[int], iteration: int | Sequence[int] | None
+) -> tuple[int, ...]:
+    """Return an iteration of each loop and repeat, the last where none is asked for."""
+    if min(counts, default=1) < 1:
+        raise ParameterError(f"pass '{step.path}' runs no iteration that could be traced")
+    last = [count - 1 for count in counts]
+    if iteration is None:
+        return tuple(last)
+    numbers = (iteration,) if isinstance(iteration, Integral) else tuple(iteration)  # type: ignore[arg-type]
+    whole = all(isinstance(n, Integral) and not isinstance(n, bool) for n in numbers)
+    if not counts and whole and set(numbers) <= {0}:
+        return ()
+    if not whole or len(numbers) > len(counts):
+        repeats = f"it has {' x '.join(map(str, counts))} iterations" if counts else "it runs once"
+        raise ParameterError(f"iteration {iteration!r} of '{step.path}'; {repeats}")
+    at = [*last[: len(last) - len(numbers)], *map(int, numbers)]
+    for number, count in zip(at, counts, strict=True):
+        if not 0 <= number < count:
+            raise ParameterError(
+                f"iteration {number} of '{step.path}', which has {count}; 0 to {count - 1} were expected"
+            )
+    return tuple(at)
+
+
+def _is_last(at: Sequence[int], counts: Sequence[int]) -> bool:
+    return all(number == count - 1 for number, count in zip(at, counts, strict=True))
+
+
+def _read_texel(framebuffer: moderngl.Framebuffer, kernel: Kernel, texel: tuple[int, int]) -> list[bytes]:
+    kinds = [split_format(output.format) for output in kernel.outputs]
+    return [
+        framebuffer.read((*texel, 1, 1), parts, attachment=index, alignment=1, dtype=dtype)
+        for index, (parts, dtype) in enumerate(kinds)
+    ]
+
+
+def _values(
+    names: Sequence[str], formats: Sequence[str], texels: Sequence[bytes]
+) -> dict[str, tuple[float, ...]]:
+    """Return the numbers of a texel in each output."""
+    pairs = zip(names, formats, texels, strict=True)
+    return {name: tuple(floats_in(form, data).tolist()) for name, form, data in pairs}
+
+
+def _files_of(stage: ShaderStage) -> dict[str, tuple[str, ...]]:
+    """Return the lines of the author's files, the kernel's own first."""
+    return _files(stage.source)
+
+
+@GRAPHS.cached(identities=1)
+def _files(source: Any) -> dict[str, tuple[str, ...]]:
+    lines: dict[str, dict[int, str]] = {source.path: {}}
+    for line in source.lines:
+        lines.setdefault(line.file, {})[line.number] = line.text
+    return {
+        path: tuple([numbered.get(n, "") for n in range(1, max(numbered, default=0) + 1)])
+        for path, numbered in lines.items()
+    }
