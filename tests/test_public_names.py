@@ -22,14 +22,14 @@ from playground.rooms import ROOMS
 CLASSES = [name for name in playground.__all__ if isinstance(getattr(playground, name), type)]
 EXPLAINED = {
     "ctx", "draw", "driver", "fingerprint", "forget_unused", "info", "metres", "not_finite", "read",
-    "release", "render", "steps", "texture",
+    "release", "render", "steps", "texture", "trace", "trace_frame",
 }  # fmt: skip
 """What programs call; each has an example."""
 TOOLS = {
     "borrowed", "cache", "clock", "disk_caching", "draw_above_terrain", "draw_window", "drawn",
     "eye_height", "keys_of", "not_finite_by_pass", "options", "painted",
-    "picture_hash", "plain_forms", "plan", "plan_for_window", "recall", "record", "released", "runner",
-    "runs", "stale", "texture_of", "warnings",
+    "picture_hash", "plain_forms", "plan", "plan_for_window", "recall", "record", "released", "run_apart",
+    "runner", "runs", "stale", "supposing", "texture_of", "tracer", "warnings",
 }  # fmt: skip
 """What the window and other tools use as well."""
 

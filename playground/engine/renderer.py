@@ -268,12 +268,28 @@ class Renderer:
         self._texture(plan, plan.picture)
         self.record = self.record.counted_as(before)
 
+    def run_apart(self, plan: Plan, ref: Ref) -> FrameRecord:
+        """Run what a texture of a plan needs apart from the frames, and return the record of that.
+
+        The last frame, what ran for it and how often all passes ran stay as they were.
+        """
+        before, runs, keeps = self.record, self.runs.copy(), self.options.keeps
+        self.options.keeps = True
+        try:
+            self._texture(plan, ref)
+            record = self.record
+            if before.plan is not None:
+                self.recall(before.plan)
+            return record
+        finally:
+            self.record, self.runs, self.options.keeps = before, runs, keeps
+
     def picture_hash(self, plan: Plan) -> str:
         """Return a hash of what a plan's picture is drawn from, the same on every machine.
 
         See ``PictureHasher``.
         """
-        with self._supposing(plan):
+        with self.supposing(plan):
             return self._hasher.hash_of(plan, self.runner.driver_for, self.runner.given_for_key)
 
     def stale(
@@ -294,11 +310,11 @@ class Renderer:
 
     def keys_of(self, plan: Plan) -> Keys:
         """Return what each pass's textures depend on: see ``cache_keys``."""
-        with self._supposing(plan):
+        with self.supposing(plan):
             return self._keys.keys_of(plan, self.runner.driver_for, self.runner.given_for_key)
 
     @contextmanager
-    def _supposing(self, plan: Plan) -> Iterator[None]:
+    def supposing(self, plan: Plan) -> Iterator[None]:
         """Suppose that a plan were being drawn; afterwards the last frame's is the last frame's again."""
         self.runner.set_frame(plan)
         try:

@@ -192,7 +192,7 @@ class Runner:
         driver = driver or self.driver_for(step)
         if self.before_step is not None:
             self.before_step(step)
-        self.ctx.disable(self._of_draws)
+        self.disable_draw_state()
         kernel = step.kernel
         if isinstance(kernel, TexelKernel):
             uniforms = self._given_now(step, around)
@@ -212,6 +212,10 @@ class Runner:
                 case CpuSource():
                     return self._source(step, inputs, uniforms, key)
             return self.kernels.plain(step, inputs, uniforms, around, self.frame_uniforms(step, frame))
+
+    def disable_draw_state(self) -> None:
+        """Disable what only draws have enabled: blending, the depth test, culling."""
+        self.ctx.disable(self._of_draws)
 
     def _given_now(self, step: Step, around: LoopIteration | None) -> dict[str, Any]:
         """Return what the engine gives a kernel in this frame: the very same in every iteration, if it is."""

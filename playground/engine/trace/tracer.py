@@ -11,18 +11,21 @@ sandbox (``TryTexts``) to compile before: driver and sandbox share the cache of 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from numbers import Integral
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.engine.cache import Cache
 from playground.engine.execution import FrameRecord, Search
 from playground.engine.kernels import usual_of, vertices_of
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step
 from playground.engine.programs import Program
 from playground.engine.results import Result, Wired
+from playground.engine.runner import Runner
 from playground.engine.textures import drain, floats_in, make_framebuffer, release_framebuffer, split_format
 from playground.engine.trace.instrument import ALL, Traced, functions_of, instrument
 from playground.engine.trace.model import MAX_EVENTS, Leaf, Trace, rebuild
@@ -36,8 +39,6 @@ from playground.sketch.model import CpuSource, Draw, Kernel, PlainFragment, Sket
 
 if TYPE_CHECKING:
     import moderngl
-
-    from playground.engine.renderer import Renderer
 
 _TRACED = (TexelKernel, PlainFragment)
 _MAX_PROGRAMS = 32
@@ -70,12 +71,49 @@ class _Compiled:
     count: int = 0  # leaves of the last run
 
 
+class TracedFrames(Protocol):
+    """What draws the frames whose steps are traced."""
+
+    @property
+    def record(self) -> FrameRecord:
+        """The last frame's."""
+
+    @property
+    def cache(self) -> Cache:
+        """The results of passes."""
+
+    @property
+    def runner(self) -> Runner:
+        """What runs the passes."""
+
+    def borrowed(self) -> AbstractContextManager[None]:
+        """Lend the context, made current."""
+
+    def supposing(self, plan: Plan) -> AbstractContextManager[None]:
+        """Suppose that a plan were being drawn."""
+
+    def plan(
+        self,
+        sketch: Sketch,
+        size: tuple[int, int],
+        time: float = ...,
+        steps: Mapping[str, int] | None = ...,
+        ref: str = ...,
+        *,
+        canonical: str = ...,
+    ) -> Plan:
+        """Make a sketch concrete."""
+
+    def run_apart(self, plan: Plan, ref: Ref) -> FrameRecord:
+        """Run what a texture of a plan needs apart from the frames."""
+
+
 class Tracer:
     """Traces the steps of one renderer's frames, and keeps compiled texts and the last step's run."""
 
-    def __init__(self, renderer: Renderer) -> None:
+    def __init__(self, renderer: TracedFrames) -> None:
         self._renderer = renderer
-        self._ctx = renderer._ctx
+        self._ctx = renderer.runner.ctx
         self._programs: Memo[tuple[str, str], _Compiled] = Memo(
             "traced programs", _MAX_PROGRAMS, dropped=lambda _, compiled: compiled.program.release()
         )
@@ -130,14 +168,12 @@ class Tracer:
         step, loops = self._step(plan, ref)
         texel = _checked_texel(step, texel)
         renderer = self._renderer
-        runs = renderer.runs.copy()
-        with renderer._supposing(plan), renderer.borrowed():
+        with renderer.supposing(plan), renderer.borrowed():
             try:
                 run = self._run_of(plan, step, loops, ref, iteration)
-                self._ctx.disable(renderer.runner._of_draws)
+                renderer.runner.disable_draw_state()
                 return self._traced(run, texel, function, limit)
             finally:
-                renderer.runs = runs
                 drain(self._ctx)
 
     def texts(self, plan: Plan, path: str, function: str | None = None) -> tuple[str, str]:
@@ -148,7 +184,7 @@ class Tracer:
         ref = plan.flat.ref(path, plan.sketch.name)
         step, loops = self._step(plan, ref)
         renderer = self._renderer
-        with renderer._supposing(plan), renderer.borrowed():
+        with renderer.supposing(plan), renderer.borrowed():
             run = self._run_of(plan, step, loops, ref, None)
             traced = self._instrumented(run, function)[1]
         return _vertex_of(traced), traced.text
@@ -242,15 +278,7 @@ class Tracer:
             return before
         if self._run is not None and self._run[0] is plan and self._run[3].plan is plan:
             return self._run[3]
-        keeps, renderer.options.keeps = renderer.options.keeps, True
-        try:
-            renderer._texture(plan, ref)
-            record = renderer.record
-            if before.plan is not None:
-                renderer.recall(before.plan)
-        finally:
-            renderer.options.keeps = keeps
-            renderer.record = before
+        record = renderer.run_apart(plan, ref)
         renderer.runner.set_frame(plan)
         return record
 
