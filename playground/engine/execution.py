@@ -471,8 +471,8 @@ class Search(Execution):
         start: Result | None,
     ) -> Result:
         path, iterations = self._target
-        at = all(self._states[loop].iterations == number for loop, number in iterations.items())
-        if step.path == path and at:
+        states = self._states
+        if step.path == path and all(states[loop].iterations == n for loop, n in iterations.items()):
             self._visit(step, inputs, around)
             raise Visited
         return super()._run_step(step, inputs, around, start)
