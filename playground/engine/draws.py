@@ -120,6 +120,40 @@ class Draws:
                 self._surfaces.pop(0).release()
         return result
 
+    def draw_again(
+        self,
+        program: Program,
+        step: Step,
+        inputs: Mapping[str, Wired],
+        uniforms: Mapping[str, Any],
+        around: LoopIteration | None,
+        iteration: int,
+        depth: str,
+    ) -> None:
+        """Draw a step's mesh once more by another program into what is bound, unblended.
+
+        ``iteration`` is that of the step's own repeat; ``depth`` the function by which fragments pass, "" for
+        all. The others are those of ``run``.
+        """
+        kernel, ctx = _draw_of(step), self.ctx
+        own, stage = self.kernels.program(step, "draw", inputs, around)
+        loaded, _ = self._array(own, step, inputs)
+        chosen = self._chosen(step, inputs, uniforms) if loaded.places is not None else None
+        self.kernels.binder.bind(program, step, uniforms, inputs, stage)
+        program.count(kernel.repeat, iteration, step.total, around)
+        array = loaded.array(program)
+        ctx.enable_only(ctx.DEPTH_TEST if depth else 0)
+        try:
+            if depth:
+                ctx.depth_func = depth
+            if chosen is None:
+                array.render(ctx.TRIANGLES, instances=instances_of(step, inputs, ctx))
+            else:
+                loaded.render(array, chosen)
+        finally:
+            _enable(ctx, "none", "none")
+            array.release()
+
     def _look_through(self, window: Window, program: Program) -> None:
         """Clip a draw of the whole picture to a window of it.
 

@@ -73,10 +73,11 @@ class Varying:
     name: str
     type: str
     is_flat: bool
+    declaration: str  # in the fragment shader
 
     @property
     def uniforms(self) -> tuple[str, ...]:
-        """Return the uniforms: its value at the chosen texel, and along x and y unless it is flat."""
+        """Return the uniforms: its value at the chosen texel, and its derivatives unless it is flat."""
         parts = ("at",) if self.is_flat else ("at", "x", "y")
         return tuple(f"k_{part}_{self.name}" for part in parts)
 
@@ -91,7 +92,7 @@ class Traced:
     outputs: tuple[str, ...]  # the shader's own, in the order of their locations: names
     quads: bool
     varyings: tuple[Varying, ...]
-    uses_depth: bool  # whether it takes gl_FragCoord.zw from the uniform k_at_depth, as two numbers
+    has_mesh: bool  # then it takes gl_FragCoord.zw from k_at_depth, and gl_FrontFacing from k_is_front
     functions: tuple[str, ...]  # that are recorded
     others: tuple[str, ...]  # of the author's files, that are not
 
@@ -152,7 +153,6 @@ class _Writer:
         words = {token.text for token in self.tokens}
         self.discards = "discard" in words
         self.quads = any(_DERIVED.fullmatch(word) for word in words) or bool(words & OLD_NAMES.keys())
-        self.uses_depth = has_mesh and "gl_FragCoord" in words
         self.varyings: list[Varying] = []
         self.has_old_outputs = False
         self.discard_marks: dict[int, str] = {}  # by the token of the discard
@@ -191,7 +191,7 @@ class _Writer:
             outputs=names,
             quads=self.quads,
             varyings=tuple(self.varyings),
-            uses_depth=self.uses_depth,
+            has_mesh=self.has_mesh,
             functions=tuple(dict.fromkeys(recorded)),
             others=tuple(name for name in own if name not in recorded),
         )
@@ -220,11 +220,15 @@ class _Writer:
             for name in node.names:
                 if name.name == "k_place_at":
                     self._replace(name.name, "k_coord.xy")
-                elif name.name.startswith("gl_") or name.arrays or node.type.arrays:
+                elif name.name.startswith("gl_"):
+                    raise self._refusal(node, f"it declares {name.name} in its own way")
+                elif name.arrays or node.type.arrays or node.type.name not in LEAF_TYPES:
                     raise self._refusal(node, f"its vertex stage hands it {self._source(node)}")
                 else:
                     is_flat = "flat" in qualifiers or node.type.name[:1] in "iu"
-                    self.varyings.append(Varying(name.name, node.type.name, is_flat))
+                    words = [OLD_NAMES.get(q, q) for q in qualifiers if not q.startswith("layout")]
+                    declaration = f"{' '.join(words)} {node.type.name} {name.name};"
+                    self.varyings.append(Varying(name.name, node.type.name, is_flat, declaration))
             self.removed.update(range(node.first, node.last))
 
     def _length(self, arrays: Sequence[Node | None]) -> int:
@@ -274,6 +278,8 @@ class _Writer:
                 word = self.words.get(index) or token.text
                 if word == "gl_FragCoord":
                     word = "k_coord"
+                elif word == "gl_FrontFacing" and self.has_mesh:
+                    word = "k_is_front"
                 elif is_old:
                     word = OLD_NAMES.get(word, word)
                 parts.append(word)
@@ -621,7 +627,7 @@ class _Writer:
         return "((k_trace_texel & ~1) + (ivec2(gl_FragCoord.xy) & 1) - k_trace_texel)"
 
     def _coordinate(self) -> str:
-        depth = "k_at_depth" if self.uses_depth else "gl_FragCoord.zw"
+        depth = "k_at_depth" if self.has_mesh else "gl_FragCoord.zw"
         return f"vec4(vec2(k_trace_texel + {self._lane()}) + 0.5, {depth})"
 
     def _settings(self) -> list[tuple[str, str, str]]:
@@ -649,8 +655,8 @@ class _Writer:
             "int k_wanted; int k_count = 0; bool k_is_gone = false; bool k_test;",
             "uvec4 k_bits = uvec4(0u); uint k_what = 0u;",
         ]
-        if self.uses_depth:
-            lines.append("uniform vec2 k_at_depth;")
+        if self.has_mesh:
+            lines.append("uniform vec2 k_at_depth; uniform bool k_is_front;")
         for varying in self.varyings:
             lines.append(f"uniform {varying.type} {', '.join(varying.uniforms)};")
         # Values of globals may name them, except in ES, where these are constants.

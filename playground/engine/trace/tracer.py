@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from numbers import Integral
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +27,14 @@ from playground.engine.programs import Program
 from playground.engine.results import Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.textures import drain, floats_in, make_framebuffer, release_framebuffer, split_format
+from playground.engine.trace.capture import Capture
 from playground.engine.trace.instrument import ALL, Traced, functions_of, instrument
 from playground.engine.trace.model import MAX_EVENTS, Leaf, Trace, rebuild
+from playground.engine.tuning import Stage
 from playground.errors import ParameterError, SketchError, nearest
 from playground.memo import GRAPHS, Memo
 from playground.shader.own_shaders import TRIANGLE
+from playground.shader.source import SourceText
 from playground.shader.wrap import FRAGMENT, ShaderStage, Wrapped
 from playground.sketch.flat import Fed, Ref
 from playground.sketch.flatten import flatten
@@ -40,7 +43,7 @@ from playground.sketch.model import CpuSource, Draw, Kernel, PlainFragment, Sket
 if TYPE_CHECKING:
     import moderngl
 
-_TRACED = (TexelKernel, PlainFragment)
+_TRACED = (TexelKernel, PlainFragment, Draw)
 _MAX_PROGRAMS = 32
 _FIRST_SIDE = 16  # of a target whose number of events nobody knows
 _MAX_SIDE = 512
@@ -56,10 +59,25 @@ class _Run:
     around: LoopIteration | None
     usual: Mapping[str, tuple[float, ...]]
     iteration: tuple[int, ...]  # of the loops and the repeat
-    own_iteration: int  # of the kernel's repeat
-    state: Mapping[str, moderngl.Texture]  # what it reads of the iteration before
-    result: Result | None  # what it gave in the picture; None: nothing has that
+    own_iteration: int = 0  # of the step's repeat
+    state: Mapping[str, moderngl.Texture] = field(default_factory=dict)  # of the iteration before
+    result: Result | None = None  # what it gave in the picture; None: nothing has that
+    depth: moderngl.Renderbuffer | None = None  # that a draw left
     owned: list[Result] = field(default_factory=list)  # textures that are its own
+
+    @property
+    def driver(self) -> str:
+        """By what it runs: a mesh is drawn, all else by fragments over the whole target."""
+        return "draw" if isinstance(self.step.kernel, Draw) else FRAGMENT
+
+
+class _Latest(NamedTuple):
+    """The run of the last trace, and what it is of."""
+
+    plan: Plan
+    record: FrameRecord
+    frame: int  # as programs count frames: textures stay until the next one
+    run: _Run
 
 
 @dataclass(eq=False)
@@ -117,13 +135,14 @@ class Tracer:
         self._programs: Memo[tuple[str, str], _Compiled] = Memo(
             "traced programs", _MAX_PROGRAMS, dropped=lambda _, compiled: compiled.program.release()
         )
-        # What the last trace ran on, and of which frame that is.
-        self._run: tuple[Plan, str, tuple[int, ...], FrameRecord, _Run] | None = None
+        self._capture = Capture(self._ctx)
+        self._latest: _Latest | None = None
         self._targets: dict[tuple[tuple[str, ...], int], _Target] = {}
 
     def release(self) -> None:
         """Release programs and textures."""
         self._forget_run()
+        self._capture.release()
         self._programs.clear()
         for target in self._targets.values():
             target.release()
@@ -152,7 +171,11 @@ class Tracer:
             # The eye may have been raised over the terrain.
             if has_kernel and last.sketch in (now, now.with_camera(last.sketch.camera)):
                 return last
-        return self._renderer.plan(sketch, size, time, steps, path, canonical=leaf)
+        plan = self._renderer.plan(sketch, size, time, steps, path, canonical=leaf)
+        found = plan.step(plan.flat.ref(path, sketch.name).path)
+        if found is not None and isinstance(found.kernel, Draw) and sketch.picture.samples != 1:
+            return self.plan(sketch.with_picture(samples=1), path, size, time, steps)
+        return plan
 
     def trace(
         self,
@@ -186,7 +209,7 @@ class Tracer:
         renderer = self._renderer
         with renderer.supposing(plan), renderer.borrowed():
             run = self._run_of(plan, step, loops, ref, None)
-            traced = self._instrumented(run, function)[1]
+            _, traced = self._instrumented(run, function)
         return _vertex_of(traced), traced.text
 
     # ── what is traced ───────────────────────────────────────────────────────
@@ -200,12 +223,8 @@ class Tracer:
         kernel = step.kernel
         if isinstance(kernel, _TRACED):
             return found
-        if isinstance(kernel, CpuSource):
-            reason = "a source, which the processor makes"
-        elif isinstance(kernel, Draw):
-            reason = "a draw of a mesh"
-        else:
-            reason = "a compute shader"
+        source = isinstance(kernel, CpuSource)
+        reason = "a source, which the processor makes" if source else "a compute shader"
         traceable = [s.path for s in plan.walk() if isinstance(s.kernel, _TRACED)]
         hint = nearest(ref.path, traceable)
         raise SketchError(f"pass '{ref.path}' is {reason}: no fragment shader to trace{hint}")
@@ -223,13 +242,13 @@ class Tracer:
         record = self._record_of(plan, ref)
         changing = [loop for loop in loops if loop.path in record.keys.changes[id(step)]]
         counts = [loop.repeat for loop in changing]
-        has_repeat = isinstance(step.kernel, TexelKernel) and step.kernel.repeat != "1"
+        has_repeat = step.kernel.repeat != "1"
         counts += [step.repeat] if has_repeat else []
         at = _checked_iteration(step, counts, iteration)
-        if self._run is not None:
-            plan_before, path, at_before, record_before, run = self._run
-            if plan_before is plan and path == step.path and at_before == at and record_before is record:
-                return run
+        latest = self._latest
+        if latest is not None and latest.plan is plan and latest.record is record:
+            if (latest.run.step.path, latest.run.iteration) == (step.path, at):
+                return latest.run
         self._forget_run()
         runner = renderer.runner
         results = dict(record.results)
@@ -253,8 +272,7 @@ class Tracer:
             inputs = {name: kept(wired) for name, wired in inputs.items()}
             uniforms = runner.given_for(step, frame)
             usual = dict(usual_of(step.kernel, runner.frame_uniforms(step, frame)))
-            run = _Run(step, inputs, uniforms, around, usual, at, 0, {}, None, owned)
-            visited.append(run)
+            visited.append(_Run(step, inputs, uniforms, around, usual, at, owned=owned))
 
         if changing:
             search = Search(plan, record.keys, renderer.cache, runner, results, visit)
@@ -263,12 +281,24 @@ class Tracer:
             inputs = {name: _wired(source, results) for name, source in step.inputs}
             visit(step, inputs, None)
         run = visited[0]
-        if has_repeat:
+        self._latest = _Latest(plan, record, runner.programs.frame, run)
+        if isinstance(step.kernel, Draw):
+            self._draw(run, at[-1] if has_repeat else 0)
+        elif has_repeat:
             self._go_to_iteration(run, at[-1])
-        if _is_last(at, counts) and renderer.runner.driver_for(step) == FRAGMENT:
+        if _is_last(at, counts) and runner.driver_for(step) == FRAGMENT and run.depth is None:
             run.result = results.get(step.path)
-        self._run = plan, step.path, at, record, run
         return run
+
+    def _draw(self, run: _Run, iteration: int) -> None:
+        """Draw a run's mesh, up to one of its own iterations, with one sample a pixel, and keep its depth."""
+        runner, step = self._renderer.runner, run.step
+        run.own_iteration = iteration
+        part = replace(step, repeat=iteration + 1)
+        result = runner.draws.run(part, run.inputs, run.uniforms, run.around, 1, keeps_surface=False)
+        run.owned.append(result)
+        assert result.target is not None, "what has one sample a pixel draws on its own textures"
+        run.result, run.depth = result, result.target.depth
 
     def _record_of(self, plan: Plan, ref: Ref) -> FrameRecord:
         """Return the record of a frame of a plan in which all ran that a texture needs."""
@@ -276,8 +306,10 @@ class Tracer:
         before = renderer.record
         if before.plan is plan and ref.path in before.results:
             return before
-        if self._run is not None and self._run[0] is plan and self._run[3].plan is plan:
-            return self._run[3]
+        latest = self._latest
+        if latest is not None and latest.plan is plan:
+            if latest.frame == renderer.runner.programs.frame:
+                return latest.record
         record = renderer.run_apart(plan, ref)
         renderer.runner.set_frame(plan)
         return record
@@ -298,18 +330,20 @@ class Tracer:
         run.state = dict(start.textures)
 
     def _forget_run(self) -> None:
-        if self._run is not None:
-            for result in self._run[4].owned:
+        if self._latest is not None:
+            for result in self._latest.run.owned:
                 self._renderer.runner.pool.give(result)
-            self._run = None
+            self._latest = None
 
     # ── drawing ──────────────────────────────────────────────────────────────
 
     def _traced(self, run: _Run, texel: tuple[int, int], function: str | None, limit: int) -> Trace:
-        stage, traced = self._instrumented(run, function)
-        compiled = self._compiled(traced, stage.source)
-        real = self._real_texel(run, texel)
+        wrapped, traced = self._instrumented(run, function)
+        compiled = self._compiled(traced)
+        varyings, depth_test = self._varyings(run, wrapped, traced, texel)
+        real = self._real_texel(run, texel, depth_test)
         self._bind(compiled.program, run)
+        compiled.program.set_all(varyings)
         leaves, own, count, is_gone = self._recorded(run, compiled, texel, limit)
         calls, events = rebuild(traced.places, traced.structs, leaves)
         formats = [output.format for output in run.step.kernel.outputs]
@@ -327,30 +361,64 @@ class Tracer:
             count=count,
             functions=traced.functions,
             others=traced.others,
-            files=_files_of(stage),
+            files=_files(wrapped.stages["fragment"].source),
             is_discarded=is_gone,
         )
 
-    def _stages(self, run: _Run) -> tuple[Wrapped, Sequence[tuple[str, int]]]:
-        """Return what the driver compiles of a run's step, and what is chosen in it."""
-        runner, step = self._renderer.runner, run.step
-        if not isinstance(step.kernel, TexelKernel):
-            return runner.programs.wrapped(step.kernel, FRAGMENT), ()
-        stage = runner.tuning.stage(step, run.inputs, FRAGMENT, in_loop=run.around is not None)
-        return runner.programs.wrapped(step.kernel, FRAGMENT, stage.choices), stage.choices
+    def _stage(self, run: _Run) -> Stage:
+        """Return how a run's step runs on this renderer."""
+        if isinstance(run.step.kernel, PlainFragment):
+            return Stage()
+        tuning = self._renderer.runner.tuning
+        return tuning.stage(run.step, run.inputs, run.driver, in_loop=run.around is not None)
 
-    def _instrumented(self, run: _Run, function: str | None) -> tuple[ShaderStage, Traced]:
-        wrapped, _ = self._stages(run)
+    def _instrumented(self, run: _Run, function: str | None) -> tuple[Wrapped, Traced]:
+        kernel, programs = run.step.kernel, self._renderer.runner.programs
+        wrapped = programs.wrapped(kernel, run.driver, self._stage(run).choices)
         stage = wrapped.stages["fragment"]
+        has_mesh = isinstance(kernel, Draw) or vertices_of(kernel) > 3
         try:
-            return stage, _instrumented(stage, function or "")
+            return wrapped, _instrumented(stage, function or "", has_mesh)
         except KeyError:
             names = functions_of(stage)
             hint = nearest(str(function), names) or f"; expected '{ALL}' or one of {', '.join(names)}"
             message = f"pass '{run.step.path}' has no function '{function}'{hint}"
             raise ParameterError(message) from None
 
-    def _compiled(self, traced: Traced, source: Any) -> _Compiled:
+    def _varyings(
+        self, run: _Run, wrapped: Wrapped, traced: Traced, texel: tuple[int, int]
+    ) -> tuple[dict[str, Any], str]:
+        """Return the uniforms that stand for what the vertex stage hands a texel's fragment.
+
+        Also the depth test by which that fragment is found. Raises ``ParameterError`` where none is drawn.
+        """
+        if not traced.varyings and not traced.has_mesh:
+            return {}, ""
+        step, draws = run.step, self._renderer.runner.draws
+        kernel = step.kernel
+
+        def draw(depth: str) -> dict[str, Any] | None:
+            def drawn(program: Program) -> None:
+                if isinstance(kernel, Draw):
+                    at = run.around, run.own_iteration
+                    draws.draw_again(program, step, run.inputs, run.uniforms, *at, depth)
+                else:
+                    self._bind(program, run)
+                    program.fill(vertices_of(kernel))
+
+            return self._capture.uniforms(wrapped, traced, texel, step.size, run.depth, drawn)
+
+        ways = [""]
+        if isinstance(kernel, Draw) and (kernel.over or kernel.depth != "none"):
+            # The fragment that is seen, else one that the shader discards in front of it.
+            ways = [">"] if kernel.over else ["==", "<="]
+        for way in ways:
+            uniforms = draw(way)
+            if uniforms is not None:
+                return uniforms, way
+        raise ParameterError(f"texel {texel} of '{step.path}': nothing is drawn there")
+
+    def _compiled(self, traced: Traced) -> _Compiled:
         key = _vertex_of(traced), traced.text
         compiled: _Compiled | None = self._programs.get(key)
         if compiled is None:
@@ -362,35 +430,44 @@ class Tracer:
         """Set all that a run's shader reads."""
         runner, step = self._renderer.runner, run.step
         kernel, kernels = step.kernel, runner.kernels
-        if not isinstance(kernel, TexelKernel):
+        if isinstance(kernel, PlainFragment):
             kernels.bind_plain(program, step, run.inputs, run.uniforms, run.around, run.usual)
             return
-        stage = runner.tuning.stage(step, run.inputs, FRAGMENT, in_loop=run.around is not None)
-        unit = kernels.binder.bind(program, step, run.uniforms, run.inputs, stage)
+        unit = kernels.binder.bind(program, step, run.uniforms, run.inputs, self._stage(run))
+        if not isinstance(kernel, TexelKernel):
+            program.count(kernel.repeat, run.own_iteration, step.total, run.around)
+            return
         kernels.binder.previous(kernels.binder.previous_units(program, kernel, unit), run.state)
         at_once = min(kernels.at_once(step), max(step.repeat - run.own_iteration, 1))
         program.count(kernel.repeat, run.own_iteration, step.total, run.around, at_once)
         program.set("k_previous_shift", 0)
         program.set("k_shift", 0)
 
-    def _real_texel(self, run: _Run, texel: tuple[int, int]) -> list[bytes]:
-        """Return the bytes of a texel in each output, as the untraced shader gives it."""
+    def _real_texel(self, run: _Run, texel: tuple[int, int], depth_test: str) -> list[bytes]:
+        """Return the bytes of a texel in each output, as the untraced shader gives it, unblended."""
         ctx, runner, step = self._ctx, self._renderer.runner, run.step
-        if run.result is not None:
-            return _read_texel(run.result.framebuffer(ctx), step.kernel, texel)
-        _, choices = self._stages(run)
-        program = runner.programs.get(step.kernel, FRAGMENT, tuple(choices))
-        self._bind(program, run)
-        result = runner.pool.take(step.size, step.kernel.outputs)
+        kernel = step.kernel
+        is_blended = isinstance(kernel, Draw) and kernel.blend != "none"
+        if run.result is not None and not is_blended:
+            return _read_texel(run.result.framebuffer(ctx), kernel, texel)
+        program = runner.programs.get(kernel, run.driver, self._stage(run).choices)
+        result = runner.pool.take(step.size, kernel.outputs)
+        textures = [result.textures[output.name] for output in kernel.outputs]
+        framebuffer = make_framebuffer(ctx, textures, run.depth)
         try:
-            framebuffer = result.framebuffer(ctx)
             framebuffer.use()
-            ctx.scissor = (texel[0] & ~1, texel[1] & ~1, 2, 2)
+            framebuffer.scissor = (texel[0] & ~1, texel[1] & ~1, 2, 2)
+            framebuffer.depth_mask = False
             framebuffer.clear()
-            program.fill(vertices_of(step.kernel))
-            return _read_texel(framebuffer, step.kernel, texel)
+            if isinstance(kernel, Draw):
+                at = run.around, run.own_iteration
+                runner.draws.draw_again(program, step, run.inputs, run.uniforms, *at, depth_test)
+            else:
+                self._bind(program, run)
+                program.fill(vertices_of(kernel))
+            return _read_texel(framebuffer, kernel, texel)
         finally:
-            ctx.scissor = None
+            release_framebuffer(framebuffer)
             runner.pool.give(result)
 
     def _recorded(
@@ -470,8 +547,8 @@ class _Target:
 
 
 @GRAPHS.cached(identities=1)
-def _instrumented(stage: ShaderStage, functions: str) -> Traced:
-    return instrument(stage, functions)
+def _instrumented(stage: ShaderStage, functions: str, has_mesh: bool) -> Traced:
+    return instrument(stage, functions, has_mesh=has_mesh)
 
 
 def _vertex_of(traced: Traced) -> str:
@@ -555,13 +632,9 @@ def _values(
     return {name: tuple(floats_in(form, data).tolist()) for name, form, data in pairs}
 
 
-def _files_of(stage: ShaderStage) -> dict[str, tuple[str, ...]]:
-    """Return the lines of the author's files, the kernel's own first."""
-    return _files(stage.source)
-
-
 @GRAPHS.cached(identities=1)
-def _files(source: Any) -> dict[str, tuple[str, ...]]:
+def _files(source: SourceText) -> dict[str, tuple[str, ...]]:
+    """Return the lines of the author's files, by path, the kernel's own first."""
     lines: dict[str, dict[int, str]] = {source.path: {}}
     for line in source.lines:
         lines.setdefault(line.file, {})[line.number] = line.text
