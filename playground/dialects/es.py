@@ -6,22 +6,28 @@ not the longer one. ``Line.text`` stays what the author wrote.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import zip_longest
 
 from playground.shader.declarations import declared_names, is_declared
 from playground.shader.source import Line, SourceText
+from playground.shader.syntax.nodes import Function
+from playground.shader.syntax.symbols import symbols_of
+from playground.shader.syntax.tokens import as_written
 
-_VERSION = re.compile(r"\s*#\s*version\s+(\d{1,9})\d*\s*(\w*)")
-_EXTENSION = re.compile(r"\s*#\s*extension\b")
-_PRAGMA = re.compile(r"\s*#\s*pragma\b")
-_DIRECTIVE = re.compile(r"\s*#")
-_OLD = re.compile(
-    r"\b(?:(?P<lookup>texture(?:[123]D|Cube|2DRect)|shadow(?:[12]D|2DRect))(?P<way>Proj)?(?P<level>Lod|Grad)?"
-    r"(?:EXT|ARB)?|varying|attribute"
-    r"|gl_(?:FragColor|FragData|FragDepthEXT|TexCoord|Color|SecondaryColor|FogFragCoord))\b"
-)
+_LOOKUPS = {
+    f"{kind}{way}{level}{origin}": f"texture{way}{level}"
+    for kind in (
+        *("texture1D", "texture2D", "texture3D", "textureCube", "texture2DRect"),
+        *("shadow1D", "shadow2D", "shadow2DRect"),
+    )
+    for way in ("", "Proj")
+    for level in ("", "Lod", "Grad")
+    for origin in ("", "EXT", "ARB")
+}
+"""Older functions that look a texture up, each with what it is called since GLSL 1.30."""
+
 _COLOUR, _DATA = "k_frag_color", "k_frag_data"  # as long as gl_FragColor and gl_FragData
 _OF_VERTICES = {
     "gl_TexCoord": ("k_tex_coord", "vec4 k_tex_coord[8]"),
@@ -31,10 +37,10 @@ _OF_VERTICES = {
 }
 """What older vertex shaders gave under names of GLSL's own: the new name, and its declaration."""
 
-_OURS = re.compile(
-    r"k_(?:frag_color|frag_data|tex_coord|color|second|fog|window|part|picture|corner|share|place|i|z\d"
-    r"|pixel|origin|ray|face|way|side)"
-)
+_OURS = frozenset(
+    "k_frag_color k_frag_data k_tex_coord k_color k_second k_fog k_window k_part k_picture k_corner k_share "
+    "k_place k_i k_pixel k_origin k_ray k_face k_way k_side".split()
+).union(f"k_z{digit}" for digit in range(10))
 """Names that come before or after a text, or are in the vertex shader that is made for it."""
 
 _NEVER_NAMES = frozenset(
@@ -58,8 +64,6 @@ _SINCE_TAKEN = frozenset(
 _FUNCTIONS = ("texture", "textureSize", "textureProj", "textureLod", "textureGrad")
 """Functions that the rewriting calls: a variable of that name would hide them."""
 
-_SAMPLER_FIRST = r"\s*\(\s*(?:const\s+)?(?:in\s+)?(?:(?:lowp|mediump|highp)\s+)?sampler"
-
 
 @dataclass(frozen=True)
 class Rewritten:
@@ -70,10 +74,23 @@ class Rewritten:
     names: Mapping[str, str] = field(default_factory=dict)  # the author's name → what it is called in it
 
 
+def directives(source: SourceText) -> Iterator[list[str]]:
+    """Yield the words and marks of each directive of a text, behind its ``#``."""
+    for line in source.lines:
+        if "#" in line.code and (texts := [token.text for token in as_written(line.code)])[:1] == ["#"]:
+            yield texts[1:]
+
+
+def _version(source: SourceText) -> list[str]:
+    """Return the number of a text's ``#version`` and what follows it; nothing where it has none."""
+    found = next((words for words in directives(source) if words[:1] == ["version"]), [])
+    return found[1:] if found[1:] and found[1].isdecimal() else []
+
+
 def version_of(source: SourceText) -> int:
     """Return the desktop version that a text asks for, 0 where it asks for none or for one of OpenGL ES."""
-    match = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
-    return int(match.group(1)) if match and match.group(2) != "es" and match.group(1) != "100" else 0
+    number, *profile = _version(source) or ["0"]
+    return 0 if profile == ["es"] or number == "100" else int(number[:9])
 
 
 def rewritten(source: SourceText, *, is_vertex: bool = False, declared: Collection[str] = ()) -> Rewritten:
@@ -83,28 +100,36 @@ def rewritten(source: SourceText, *, is_vertex: bool = False, declared: Collecti
     """
     is_modern = version_of(source) >= 330
     names: dict[str, str] = {}
-    version = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
-    if version is None or int(version.group(1)) < 130:
+    if int((_version(source) or ["0"])[0][:9]) < 130:
         names = _clashing(source, declared)
-    names |= _free({name for name in source.names if _OURS.fullmatch(name)}, source)
+    names |= _free(source.names & _OURS, source)
     names |= _free(_lookups_of_its_own(source), source)
     data = "gl_FragData" in source.names and not is_vertex
-    own = _own_functions(source) if names else ()
-    inputs = [declared for old, (_, declared) in _OF_VERTICES.items() if old in source.names]
-    rename = re.compile(rf"\b(?:{'|'.join(names)})\b") if names else None
+    own = _own_functions(source) if names else set[str]()
+    words = {
+        **_LOOKUPS,
+        **{old: new for old, (new, _) in _OF_VERTICES.items()},
+        "varying": "out" if is_vertex else "in",
+        "attribute": "in",
+        "gl_FragColor": f"{_DATA}[0]" if data else _COLOUR,
+        "gl_FragData": _DATA,
+        "gl_FragDepthEXT": "gl_FragDepth",
+    }
+    is_the_same = source.names.isdisjoint((*words, *names))
     lines: list[Line] = []
     extensions: list[str] = []
     for line in source.lines:
         code = line.code
-        if _DIRECTIVE.match(code):
-            if _EXTENSION.match(code) and is_modern:
+        if "#" in code:
+            _, word, *_ = (*(token.text for token in as_written(code)), "", "")
+            if word == "extension" and is_modern:
                 extensions.append(code.strip())
-            if _PRAGMA.match(code) or _EXTENSION.match(code) or (_VERSION.match(code) and not is_modern):
+            if word in ("pragma", "extension") or (word == "version" and not is_modern):
                 lines.append(replace(line, code=""))
                 continue
-        new = rename.sub(lambda match: _renamed(match, names, own), code) if rename else code
-        new = _OLD.sub(lambda match: _new(match, data=data, is_vertex=is_vertex), new)
+        new = code if is_the_same else _with_words(code, words, names, own)
         lines.append(line if new == code else replace(line, code=new))
+    inputs = [declared for old, (_, declared) in _OF_VERTICES.items() if old in source.names]
     prelude = [*extensions, *(f"in {declared};" for declared in inputs)]
     if data:
         prelude = [*prelude, f"layout(location = 0) out vec4 {_DATA}[4];"]
@@ -114,37 +139,33 @@ def rewritten(source: SourceText, *, is_vertex: bool = False, declared: Collecti
     return Rewritten(made, tuple(prelude), names)
 
 
-def _new(match: re.Match[str], *, data: bool, is_vertex: bool = False) -> str:
-    """Return what replaces an old word, as long as it."""
-    old = match.group()
-    if match.group("lookup"):
-        new = f"texture{match.group('way') or ''}{match.group('level') or ''}"
-    elif old == "gl_FragColor":
-        new = f"{_DATA}[0]" if data else _COLOUR
-    elif old == "varying" and is_vertex:
-        new = "out"
-    else:
-        new = {"gl_FragData": _DATA, "gl_FragDepthEXT": "gl_FragDepth"}.get(old) or _OF_VERTICES.get(
-            old, ("in",)
-        )[0]
-    # In a definition, blanks before the bracket would make another macro of it.
-    return new if _DIRECTIVE.match(match.string) else new.ljust(len(old))
+def _with_words(code: str, words: Mapping[str, str], names: Mapping[str, str], own: Collection[str]) -> str:
+    """Return a line with old words replaced by what is as long, and names by others.
 
-
-def _renamed(match: re.Match[str], names: Mapping[str, str], own: Collection[str]) -> str:
-    """Return the new name, but of GLSL's own function where it is called or a macro stands for it."""
-    name, after = match.group(), match.string[match.end() :].strip()
-    is_call = after.startswith("(") or (not after and _DIRECTIVE.match(match.string))
-    return name if name in _FUNCTIONS and is_call and name not in own else names[name]
+    A name that is one of GLSL's functions stays where it is called, or where a macro stands for it.
+    """
+    pieces, end, tokens = list[str](), 0, list(as_written(code))
+    is_directive = tokens[:1] and tokens[0].text == "#"
+    for token, after in zip_longest(tokens, tokens[1:]):
+        is_call = is_directive if after is None else after.text == "("
+        if token.text in names and not (token.text in _FUNCTIONS and is_call and token.text not in own):
+            new = names[token.text]
+        elif token.text in words:  # in a definition, blanks before the bracket would make another macro of it
+            new = words[token.text].ljust(0 if is_directive else len(token.text))
+        else:
+            continue
+        pieces += [code[end : token.start], new]
+        end = token.end
+    return "".join([*pieces, code[end:]])
 
 
 def _clashing(source: SourceText, declared: Collection[str]) -> dict[str, str]:
     """Return the author's names that GLSL 3.30 has taken, each with a free one."""
-    code = source.code
     clashes = sorted(source.names & _NEVER_NAMES)
     clashes += [name for name in declared if name in _SINCE_TAKEN or name in _FUNCTIONS]
-    clashes += [name for name in sorted(source.names & _SINCE_TAKEN) if _declares(code, name)]
-    clashes += [name for name in _FUNCTIONS if name in source.names and _declares(code, name, variable=True)]
+    clashes += [name for name in sorted(source.names & _SINCE_TAKEN) if _declares(source, name)]
+    functions = [name for name in _FUNCTIONS if name in source.names]
+    clashes += [name for name in functions if _declares(source, name, variable=True)]
     clashes += sorted(_own_functions(source).difference(clashes))
     return _free(clashes, source)
 
@@ -162,20 +183,25 @@ def _free(declarations: Iterable[str], source: SourceText) -> dict[str, str]:
 
 def _own_functions(source: SourceText) -> set[str]:
     """Return the functions of a text that would hide what its older lookups are rewritten as."""
-    code = source.code
-    looked_up = {_new(match, data=False).rstrip() for match in _OLD.finditer(code) if match.group("lookup")}
-    return {name for name in looked_up & source.names if _declares(code, name)}
+    looked_up = {_LOOKUPS[name] for name in source.names & _LOOKUPS.keys()}
+    return {name for name in looked_up & source.names if _declares(source, name)}
 
 
 def _lookups_of_its_own(source: SourceText) -> list[str]:
     """Return the older lookups that a text defines as functions: their calls are those of its own."""
-    words = dict.fromkeys(match.group() for match in _OLD.finditer(source.code) if match.group("lookup"))
-    typed = r"\b(?!return\b|else\b)[A-Za-z_]\w*\s+"
-    return [word for word in words if re.search(rf"{typed}{word}{_SAMPLER_FIRST}", source.code)]
+    if source.names.isdisjoint(_LOOKUPS):
+        return []
+    return [
+        node.name
+        for node in symbols_of(source.code).tree.declarations
+        if isinstance(node, Function) and node.name in _LOOKUPS
+        if node.parameters and node.parameters[0].type.name.startswith("sampler")
+    ]
 
 
-def _declares(code: str, name: str, *, variable: bool = False) -> bool:
+def _declares(source: SourceText, name: str, *, variable: bool = False) -> bool:
     """Return whether a text declares a name, or defines it as a macro; ``variable``: no function either."""
     if variable:
-        return bool(declared_names(code).get(name, frozenset()) - {"called"})
-    return is_declared(code, name, anywhere=True) or bool(re.search(rf"#\s*define\s+{name}\b", code))
+        return bool(declared_names(source.code).get(name, frozenset()) - {"called"})
+    is_macro = any(words[:2] == ["define", name] for words in directives(source))
+    return is_macro or is_declared(source.code, name, anywhere=True)

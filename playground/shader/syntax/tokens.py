@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 _TOKEN = re.compile(
@@ -50,3 +51,15 @@ def tokenize(text: str) -> tuple[list[Token], list[Comment]]:
         else:
             add(new(Token, (match.group(), kind, start, end, start, _NOTHING)))
     return tokens, comments
+
+
+def as_written(text: str) -> Iterator[Token]:
+    """Yield every token of a text where it is written: those of a directive follow a token ``#``."""
+    for token in tokenize(text)[0]:
+        if token.kind != "directive":
+            yield token
+            continue
+        start = token.start + 1
+        yield token._replace(text="#", end=start)
+        for inner in tokenize(token.text[1:])[0]:
+            yield inner._replace(start=inner.start + start, end=inner.end + start, spelled=inner.start + start)
