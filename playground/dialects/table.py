@@ -12,6 +12,7 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ from playground.shader.dialect import OWN, Dialects, Read, has_own_pragma
 from playground.shader.kernel import ForeignShader, Graph
 from playground.shader.preprocessor import WEBGL_2, code_of, live_code
 from playground.shader.source import read_text
+from playground.shader.syntax.tokens import as_written
 
 if TYPE_CHECKING:
     from playground.dialects.foreign import Files, Made, Shader
@@ -34,15 +36,12 @@ _ISF = re.compile(
     re.DOTALL,
 )
 _DESCRIBED = re.compile(r"(?:\s|//[^\n]*\n)*/\*\s*\{")
-_ISF_NAME = re.compile(
-    r"\b(?:(?:isf|vv)_FragNormCoord|IMG_(?:NORM_|THIS_|THIS_NORM_)?PIXEL|IMG_SIZE|RENDERSIZE|FRAMEINDEX"
-    r"|PASSINDEX|TIME|TIMEDELTA|DATE)\b"
+_ISF_NAMES = frozenset(
+    "isf_FragNormCoord vv_FragNormCoord IMG_PIXEL IMG_NORM_PIXEL IMG_THIS_PIXEL IMG_THIS_NORM_PIXEL IMG_SIZE "
+    "RENDERSIZE FRAMEINDEX PASSINDEX TIME TIMEDELTA DATE".split()
 )
 _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(?:i[A-Z]\w*|StrictCompatibility)\b", re.MULTILINE)
-_MAIN = re.compile(r"\bmain\s*(?:\(|$)", re.MULTILINE)  # a macro may stand for it
-_MAIN_IMAGE = re.compile(r"\bmainImage\b")  # likewise
-_SOUND = re.compile(r"\bmain(Sound|VR|Cubemap)\s*\(")
 
 
 @dataclass(frozen=True)
@@ -69,9 +68,24 @@ class Dialect:
         return passes
 
 
+def _names(code: str, *names: str, called: bool = False) -> bool:
+    """Return whether code has one of some names; ``called``: before a bracket, or where a line ends."""
+    for line in code.split("\n"):
+        if any(name in line for name in names):
+            tokens = list(as_written(line))
+            for token, after in zip_longest(tokens, tokens[1:]):
+                if token.text in names and (not called or after is None or after.text == "("):
+                    return True
+    return False
+
+
 def _is_isf(text: str, code: str) -> bool:
     """Return whether a text begins with ISF's description, or with another and reads a name of ISF's."""
-    return bool(_ISF.match(text) or (_DESCRIBED.match(text) and _ISF_NAME.search(code)))
+    return bool(_ISF.match(text) or (_DESCRIBED.match(text) and _names(code, *_ISF_NAMES)))
+
+
+def _has_main(text: str, code: str) -> bool:
+    return _names(code, "main", called=True)  # where a line ends, a macro may stand for it
 
 
 ROWS = (
@@ -83,13 +97,18 @@ ROWS = (
     ),
     Dialect(
         "shadertoy",
-        lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code),
+        lambda text, code: _names(code, "mainImage") and not _has_main(text, code),
         "shadertoy.shaders",
         is_webgl=True,
         in_folders=True,
     ),
-    Dialect("main", lambda text, code: _MAIN.search(code), "main.shaders"),
-    Dialect(_REFUSED, lambda text, code: _SOUND.search(code), "shadertoy.refused", in_folders=True),
+    Dialect("main", _has_main, "main.shaders"),
+    Dialect(
+        _REFUSED,
+        lambda text, code: _names(code, "mainSound", "mainVR", "mainCubemap", called=True),
+        "shadertoy.refused",
+        in_folders=True,
+    ),
 )
 """The dialects, in the order in which a text is looked at."""
 
