@@ -135,21 +135,62 @@ sampler1D sampler2D sampler3D samplerCube sampler2DArray sampler2DShadow sampler
 samplerBuffer sampler2DMS isampler2D usampler2D image1D image2D image3D iimage2D uimage2D
 """
 
-_FUNCTIONS = """
-radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2 log2
-sqrt inversesqrt abs sign floor trunc round roundEven ceil fract mod modf min max clamp mix step
-smoothstep isnan isinf floatBitsToInt floatBitsToUint intBitsToFloat uintBitsToFloat fma frexp
-ldexp packUnorm2x16 packSnorm2x16 packUnorm4x8 packSnorm4x8 unpackUnorm2x16 unpackSnorm2x16
-unpackUnorm4x8 unpackSnorm4x8 packHalf2x16 unpackHalf2x16 length distance dot cross normalize
-faceforward reflect refract matrixCompMult outerProduct transpose determinant inverse lessThan
-lessThanEqual greaterThan greaterThanEqual equal notEqual any all not uaddCarry usubBorrow
-umulExtended imulExtended bitfieldExtract bitfieldInsert bitfieldReverse bitCount findLSB findMSB
-textureSize textureQueryLod texture textureProj textureLod textureOffset texelFetch
-texelFetchOffset textureGrad textureGather imageSize imageLoad imageStore dFdx dFdy fwidth
-noise1 noise2 noise3 noise4 barrier memoryBarrier groupMemoryBarrier main
-"""
+_RESULTS: dict[str, str] = {
+    "float*": """
+        radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2 log2 sqrt
+        inversesqrt floor trunc round roundEven ceil fract mod step smoothstep fma normalize dFdx dFdy fwidth
+        intBitsToFloat uintBitsToFloat
+    """,
+    "*": "abs sign min max clamp mix",
+    "first": """
+        modf frexp ldexp faceforward reflect refract matrixCompMult inverse uaddCarry usubBorrow
+        bitfieldExtract bitfieldInsert bitfieldReverse
+    """,
+    "bool*": "isnan isinf lessThan lessThanEqual greaterThan greaterThanEqual equal notEqual not",
+    "int*": "floatBitsToInt bitCount findLSB findMSB",
+    "uint*": "floatBitsToUint",
+    "bool": "any all",
+    "float": "length distance dot determinant noise1",
+    "vec2": "unpackUnorm2x16 unpackSnorm2x16 unpackHalf2x16 textureQueryLod noise2",
+    "vec3": "cross noise3",
+    "vec4": "unpackUnorm4x8 unpackSnorm4x8 noise4",
+    "uint": "packUnorm2x16 packSnorm2x16 packUnorm4x8 packSnorm4x8 packHalf2x16",
+    "texel": """
+        texture textureProj textureLod textureOffset texelFetch texelFetchOffset textureGrad textureGather
+        imageLoad
+    """,
+    "texels": "textureSize imageSize",
+    "columns": "outerProduct transpose",
+    "void": "umulExtended imulExtended imageStore barrier memoryBarrier groupMemoryBarrier",
+}
+BUILT_IN_FUNCTIONS: dict[str, str] = {
+    name: result for result, names in _RESULTS.items() for name in names.split()
+}
+"""Name → type of its result. ``float*``: as many as the longest argument has; ``*``: likewise, of their
+scalar type; ``first``: the first argument's type; ``texel`` of a texture, and its size in ``texels``;
+``columns``: a matrix of the arguments' columns and rows."""
 
-GLSL_WORDS: frozenset[str] = frozenset(_KEYWORDS.split()) | frozenset(_FUNCTIONS.split())
+BUILT_IN_VARIABLES: dict[str, str] = {
+    name: of_type
+    for of_type, names in {
+        "vec4": "gl_FragCoord gl_Position gl_FragColor",
+        "vec2": "gl_PointCoord",
+        "float": "gl_FragDepth gl_PointSize",
+        "bool": "gl_FrontFacing",
+        "int": """
+            gl_VertexID gl_InstanceID gl_PrimitiveID gl_SampleID gl_Layer gl_ViewportIndex gl_InvocationID
+            gl_MaxDrawBuffers
+        """,
+        "uvec3": """
+            gl_NumWorkGroups gl_WorkGroupSize gl_WorkGroupID gl_LocalInvocationID gl_GlobalInvocationID
+        """,
+        "uint": "gl_LocalInvocationIndex",
+    }.items()
+    for name in names.split()
+}
+"""Name → type of the variables that the stages of a program have."""
+
+GLSL_WORDS: frozenset[str] = frozenset(_KEYWORDS.split()) | frozenset({*BUILT_IN_FUNCTIONS, "main"})
 """Keywords, reserved words and built-in functions of GLSL 4.60."""
 
 DRIVER_BOUND: dict[str, str] = {
