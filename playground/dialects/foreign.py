@@ -227,7 +227,7 @@ class ForeignKernel:
     def _prelude(self, text: Rewritten, missing: Sequence[str]) -> Iterator[str]:
         """Yield the lines that come before a text: what is declared for it."""
         yield from (*text.prelude, *self.shader.prelude, *self.rules.defines(text.source))
-        yield from (f"uniform {_declaration(self.rules.names[name][0], name)};" for name in missing)
+        yield from (f"uniform {declaration(self.rules.names[name][0], name)};" for name in missing)
         declared = uniforms(text.source.code)
         yield from (f"uniform {p.type} {p.name};" for p in self.shader.parameters if p.name not in declared)
 
@@ -374,8 +374,8 @@ def unfed_warnings(kernel: ForeignShader, wired: Collection[str]) -> tuple[Diagn
             names.setdefault(instead, []).append(name)
     diagnostics = []
     for instead, some in names.items():
-        either = "|".join([*some, *(name.rpartition(ELEMENT)[0] or name for name in some)])
-        line = kernel.source.line_with(rf"\b(?:{either})\b") or kernel.source.lines[0]
+        either = (*some, *(name.rpartition(ELEMENT)[0] or name for name in some))
+        line = kernel.source.line_naming(*either) or kernel.source.lines[0]
         diagnostics.append(line.diagnostic(f"nothing feeds {', '.join(some)}: {instead}", severity="warning"))
     return tuple(diagnostics)
 
@@ -405,7 +405,7 @@ def _packing(source: SourceText) -> tuple[str, ...]:
     return ("packing.glsl",) if packs and version_of(source) < _PACKS else ()
 
 
-def _declaration(kind: str, name: str) -> str:
+def declaration(kind: str, name: str) -> str:
     """Return "vec3 name[4]" for vec3[4]."""
     base, bracket, count = kind.partition("[")
     return f"{base} {name}{bracket}{count}"
@@ -588,7 +588,7 @@ class _Passes:
     def _unwritten(self, index: int, sampler: str, target: str) -> ShaderError:
         made = self.techniques[index]
         source = (made if isinstance(made, Kernel) else self.kernels[-1]).source
-        line = source.line_with(rf"\b{sampler}\b") or source.lines[0]
+        line = source.line_naming(sampler) or source.lines[0]
         hint = nearest(target, [shader.target for shader in self.shaders if shader.target])
         return line.error(f"{sampler} reads '{target}', which no pass writes{hint}")
 

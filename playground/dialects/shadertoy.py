@@ -20,7 +20,6 @@ from __future__ import annotations
 import json
 import math
 import re
-from bisect import bisect_left
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -37,174 +36,23 @@ from playground.dialects.foreign import (
     Rules,
     Shader,
     ShaderChannel,
+    declaration,
     picture_parameter,
     stand_in,
 )
 from playground.errors import ShaderError, SketchError, nearest
 from playground.json_text import read_json
 from playground.paths import shown
-from playground.shader.declarations import Declarations, is_declared
+from playground.shader.declarations import is_declared
 from playground.shader.header import title_of
 from playground.shader.parameter import Sampling, spell
-from playground.shader.preprocessor import WEBGL_2, Token, live_code, live_source, readings
+from playground.shader.preprocessor import WEBGL_2, live_code, live_source
 from playground.shader.reserved_names import SIZES
 from playground.shader.source import Line, SourceText
-
-_LOOKUP = re.compile(r"texture(?:Lod|Grad|Cube\w*)?")
-_TYPES = {
-    "float": 1,
-    "int": 1,
-    "uint": 1,
-    "bool": 1,
-    **{f"{k}vec{n}": n for k in ("", "i", "u") for n in (2, 3, 4)},
-}
-"""GLSL type → its numbers."""
-_CHANNEL = re.compile(r"iChannel\d")
-_MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(.*)$", re.MULTILINE)
-_WORD = re.compile(r"[A-Za-z_]\w*")
-_SHAPED = {"samplerCube", "sampler3D"}
-_MAX_TOKENS = 300  # of an expression whose numbers are counted
-_SWIZZLE = re.compile(r"[xyzw]+|[rgba]+|[stpq]+")
-_GIVEN = {"iResolution": 3, "iMouse": 4, "iTime": 1, "fragCoord": 2, "gl_FragCoord": 4}
-_OF_ARGUMENTS = frozenset(
-    "abs sign floor ceil fract mod min max clamp mix step smoothstep normalize reflect refract sin cos tan "
-    "pow exp log sqrt round trunc faceforward".split()
-)
-
-
-def sampler_types(code: str) -> dict[str, str]:
-    """Return the channels of a text that are no pictures, each with its type in GLSL."""
-    threes, types, unknown = set[str](), dict[str, set[str]](), set[str]()
-    for tokens in readings(code):
-        reading = _Reading(tokens)
-        for name, width in reading.lookups():
-            if width == 3:
-                threes.add(name)
-            elif width:
-                types.setdefault(name, set()).add("sampler2D")
-            else:
-                unknown.add(name)
-        for name, kind in reading.handed():
-            types.setdefault(name, set()).add(kind)
-    kinds = {name: kinds.pop() for name, kinds in types.items() if len(kinds) == 1 and kinds < _SHAPED}
-    return {name: "samplerCube" for name in threes - unknown - types.keys()} | kinds
-
-
-def names_reached(code: str, names: Collection[str]) -> set[str]:
-    """Return names, with those that the functions and macros of a text of these names name in turn."""
-    bodies: dict[str, set[str]] = {}
-    for name, body in _MACRO.findall(code):
-        bodies.setdefault(name, set()).update(_WORD.findall(body))
-    for tokens in readings(code):
-        for function in Declarations(tokens).functions:
-            inside = (token.text for token in tokens[function.opens : function.closes])
-            bodies.setdefault(function.name, set()).update(filter(_WORD.fullmatch, inside))
-    names_seen, added = set[str](), set(names)
-    while added:
-        names_seen |= added
-        added = set().union(*(bodies.get(name, ()) for name in added)) - names_seen
-    return names_seen
-
-
-class _Reading:
-    """One reading of a text: its calls, and how many numbers its expressions are."""
-
-    def __init__(self, tokens: Sequence[Token]) -> None:
-        self.declared = declared = Declarations(tokens)
-        self.texts = [token.text for token in tokens]
-        self.functions = (*declared.functions, *declared.prototypes)
-        parameters = [parameter for function in self.functions for parameter in function.parameters]
-        places = [(v.at, v.name, v.type.name) for v in (*declared.variables, *parameters)]
-        places += [(function.opens, f"{function.name}(", function.type.name) for function in self.functions]
-        self.widths: dict[str, list[tuple[int, int]]] = {}  # name, with ( a function → where, its numbers
-        for at, name, kind in sorted(places):
-            if kind in _TYPES:
-                self.widths.setdefault(name, []).append((at, _TYPES[kind]))
-
-    def lookups(self) -> Iterator[tuple[str, int]]:
-        """Yield the channels that are looked up, each with the numbers of its coordinates, 0 for unknown."""
-        for at, arguments in self._calls(_LOOKUP):
-            if len(arguments) > 1 and (name := self._channel(arguments[0])):
-                yield name, 3 if "Cube" in self.texts[at] else self._width(*arguments[1])
-
-    def handed(self) -> Iterator[tuple[str, str]]:
-        """Yield the channels that functions are called with, each with the type that the function takes."""
-        forms: dict[str, list[list[str]]] = {}
-        for function in self.functions:
-            forms.setdefault(function.name, []).append([p.type.name for p in function.parameters])
-        for at, arguments in self._calls(_WORD):
-            channels = [self._channel(argument) for argument in arguments]
-            fitting = [kinds for kinds in forms.get(self.texts[at], ()) if len(kinds) == len(arguments)]
-            if not any(channels):
-                continue
-            if len(fitting) > 1:
-                widths = [self._width(*argument) for argument in arguments]
-                fitting = [
-                    kinds
-                    for kinds in fitting
-                    if all(not w or _TYPES.get(k, w) == w for k, w in zip(kinds, widths, strict=True))
-                ]
-            for kinds in fitting:
-                yield from ((name, kind) for name, kind in zip(channels, kinds, strict=True) if name)
-            called, texel = self.texts[at], [self.texts[start] for start, _ in arguments[1:2]]
-            is_volume = called.startswith("texture3D") or (called == "texelFetch" and texel == ["ivec3"])
-            if channels[0] and is_volume:
-                yield channels[0], "sampler3D"
-
-    def _calls(self, pattern: re.Pattern[str]) -> Iterator[tuple[int, list[tuple[int, int]]]]:
-        """Yield the index of each call's name, and where its arguments begin and end."""
-        for at in range(len(self.texts) - 2):
-            if self.texts[at + 1] == "(" and pattern.fullmatch(self.texts[at]):
-                yield at, self._parts(at + 2, self.declared.closing(at + 1) or at + 2, ",")
-
-    def _channel(self, argument: tuple[int, int]) -> str:
-        """Return the channel that an argument is, "" for another."""
-        start, end = argument
-        return self.texts[start] if end == start + 1 and _CHANNEL.fullmatch(self.texts[start]) else ""
-
-    def _parts(self, start: int, end: int, marks: str) -> list[tuple[int, int]]:
-        """Return the parts of some tokens between operators, or commas, that are in no bracket."""
-        parts: list[tuple[int, int]] = []
-        at = start
-        while at < end:
-            if self.texts[at] in marks and at > start:
-                parts.append((start, at))
-                start = at + 1
-            at = max(self.declared.closing(at) or 0, at) + 1
-        return [*parts, (start, end)]
-
-    def _width(self, start: int, end: int) -> int:
-        """Return how many numbers an expression is; 0 where that is not known."""
-        if end - start > _MAX_TOKENS:
-            return 0
-        parts = self._parts(start, end, "+-*/")
-        if len(parts) > 1:
-            return max(self._width(*part) for part in parts)
-        while start < end and self.texts[start] in "+-!":
-            start += 1
-        if start >= end:
-            return 0
-        last = self.texts[end - 1]
-        if self.texts[end - 2] == "." and _SWIZZLE.fullmatch(last):
-            return len(last)
-        if end == start + 1:
-            return self._declared(last, start) or _GIVEN.get(last, 0)
-        opens = next((at for at in range(end - 2, start - 1, -1) if self.declared.closing(at) == end - 1), -1)
-        if last != ")" or opens < 0:
-            return 0
-        name = self.texts[opens - 1] if opens > start else ""
-        if not name:
-            return self._width(opens + 1, end - 1)
-        if name in _OF_ARGUMENTS:
-            return max(self._width(*part) for part in self._parts(opens + 1, end - 1, ","))
-        return 3 if name == "cross" else _TYPES.get(name, 0) or self._declared(f"{name}(", opens)
-
-    def _declared(self, name: str, before: int) -> int:
-        """Return the numbers of the latest declaration of a name before an index; 0 where there is none."""
-        places = self.widths.get(name, [])
-        index = bisect_left(places, (before,))
-        return places[index - 1][1] if index else 0
-
+from playground.shader.syntax.nodes import Function, Name
+from playground.shader.syntax.symbols import Symbol, symbols_of
+from playground.shader.syntax.tokens import is_named
+from playground.shader.syntax.types import UNKNOWN, ExpressionType, ExpressionTypes, components, conversions
 
 CHANNELS = tuple(f"iChannel{number}" for number in range(4))
 
@@ -234,6 +82,77 @@ MORE_NAMES: Names = {
     **{name: ("sampler2D", f"noise {number}") for number, name in enumerate(_MORE_CHANNELS)},
 }
 """Those of the VS Code extension."""
+
+_LOOKUPS = ("texture", "textureLod", "textureGrad")
+_SHAPED = {"samplerCube", "sampler3D"}
+_DECLARED = "vec2 fragCoord; " + " ".join(
+    f"uniform {declaration(kind, name)};" for name, (kind, _) in MORE_NAMES.items() if kind != "sampler2D"
+)
+
+
+def sampler_types(code: str) -> dict[str, str]:
+    """Return the channels of a text that are no pictures, each with its type in GLSL."""
+    threes, types, unknown = set[str](), dict[str, set[str]](), set[str]()
+    if "iChannel" not in code:
+        return {}
+    symbols = symbols_of(f"{_DECLARED}{code}")
+    of = ExpressionTypes(symbols).of
+    for site in symbols.calls:
+        call, arguments = site.node, site.node.arguments
+        channels = [
+            one.name if isinstance(one, Name) and one.name in _MORE_CHANNELS else "" for one in arguments
+        ]
+        if not any(channels):
+            continue
+        given = [of(one) for one in arguments]
+        fitting = [kinds for kinds in map(_parameters, site.functions) if _fits(given, kinds)]
+        for kinds in fitting:
+            for name, (kind, _) in zip(channels, kinds, strict=True):
+                types.setdefault(name, set()).add(kind)
+        name, place = channels[0], given[1] if len(given) > 1 else UNKNOWN
+        width = components(place[0])[1]
+        if not name or fitting:
+            continue
+        if call.name.startswith("texture3D") or (call.name == "texelFetch" and place == ("ivec3", 0)):
+            types.setdefault(name, set()).add("sampler3D")
+        elif call.name.startswith("textureCube") or (call.name in _LOOKUPS and width == 3):
+            threes.add(name)
+        elif call.name in _LOOKUPS and width:
+            types.setdefault(name, set()).add("sampler2D")
+        elif call.name in _LOOKUPS:
+            unknown.add(name)
+    sure = {name: kinds.pop() for name, kinds in types.items() if len(kinds) == 1 and kinds < _SHAPED}
+    return {name: "samplerCube" for name in threes - unknown - types.keys()} | sure
+
+
+def _parameters(function: Symbol) -> list[ExpressionType]:
+    assert isinstance(function.node, Function)
+    return [(p.type.name, len(p.type.arrays) + len(p.arrays)) for p in function.node.parameters]
+
+
+def _fits(given: Sequence[ExpressionType], wanted: Sequence[ExpressionType]) -> bool:
+    """Return whether a function takes arguments; what is not known may be anything."""
+    return len(given) == len(wanted) and all(
+        not one[0] or conversions(one, other) is not None for one, other in zip(given, wanted, strict=True)
+    )
+
+
+def names_reached(code: str, names: Collection[str]) -> set[str]:
+    """Return names, with those that the functions and macros of a text of these names name in turn."""
+    bodies: dict[str, set[str]] = {}
+    tree = symbols_of(code).tree
+    for macro in tree.preprocessed.macros:
+        bodies.setdefault(macro.name, set()).update(token.text for token in macro.body)
+    for node in tree.declarations:
+        if isinstance(node, Function) and node.body:
+            inside = (token.text for token in tree.tokens[node.body.first : node.body.last])
+            bodies.setdefault(node.name, set()).update(inside)
+    names_seen, added = set[str](), set(names)
+    while added:
+        names_seen |= added
+        added = set().union(*(bodies.get(name, ()) for name in added)) - names_seen
+    return names_seen
+
 
 MACROS = {**WEBGL_2, "HW_PERFORMANCE": "1"}
 """What Shadertoy defines."""
@@ -286,7 +205,7 @@ def refused(files: Files) -> Sequence[Shader]:
 
 
 def _defines(source: SourceText, function: str) -> Line | None:
-    return source.line_with(rf"\b{function}\s*\(")
+    return source.line_naming(function, called=True)
 
 
 KEYBOARD = "iKeyboard"
@@ -979,7 +898,6 @@ _COMMENT = re.compile(
     re.IGNORECASE,
 )
 _KEYBOARD = "keyboard"
-_MAIN_IMAGE = re.compile(r"\bmainImage\b")
 
 
 def image_of(folder: Path) -> Path | None:
@@ -987,11 +905,8 @@ def image_of(folder: Path) -> Path | None:
     path_found = next((path for path in _places(folder, _IMAGE) if path.is_file()), None)
     if path_found is None or not is_inside(path_found, (folder,)):
         return None
-    return (
-        path_found
-        if _MAIN_IMAGE.search(live_code(path_found.read_text("utf-8", "replace"), WEBGL_2))
-        else None
-    )
+    code = live_code(path_found.read_text("utf-8", "replace"), WEBGL_2)
+    return path_found if any(is_named(line, ("mainImage",)) for line in code.split("\n")) else None
 
 
 def is_of_folder(path: Path) -> bool:

@@ -12,7 +12,6 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
-from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,7 +21,7 @@ from playground.shader.dialect import OWN, Dialects, Read, has_own_pragma
 from playground.shader.kernel import ForeignShader, Graph
 from playground.shader.preprocessor import WEBGL_2, code_of, live_code
 from playground.shader.source import read_text
-from playground.shader.syntax.tokens import as_written
+from playground.shader.syntax.tokens import is_named
 
 if TYPE_CHECKING:
     from playground.dialects.foreign import Files, Made, Shader
@@ -69,14 +68,7 @@ class Dialect:
 
 
 def _names(code: str, *names: str, called: bool = False) -> bool:
-    """Return whether code has one of some names; ``called``: before a bracket, or where a line ends."""
-    for line in code.split("\n"):
-        if any(name in line for name in names):
-            tokens = list(as_written(line))
-            for token, after in zip_longest(tokens, tokens[1:]):
-                if token.text in names and (not called or after is None or after.text == "("):
-                    return True
-    return False
+    return any(is_named(line, names, called=called) for line in code.split("\n"))
 
 
 def _is_isf(text: str, code: str) -> bool:

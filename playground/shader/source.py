@@ -37,6 +37,7 @@ from playground.files import NotRegularError, irregularity, read_regular
 from playground.memo import TEXTS, PickledByFields
 from playground.paths import GLSL, shown
 from playground.shader.libraries import how_to_name, libraries, library_around
+from playground.shader.syntax.tokens import is_named
 
 _DEFINE = re.compile(r"\s*#\s*define\s+(\w+)(\(|\s+(\w+)\s*$)?")
 _DIRECTIVE = re.compile(r"\s*#")
@@ -167,10 +168,9 @@ class SourceText(PickledByFields):
         )
         return self if lines == self.lines else replace(self, lines=lines)
 
-    def line_with(self, pattern: str) -> Line | None:
-        """Return the first line whose code has a match of a regular expression, if there is one."""
-        search = re.compile(pattern).search
-        return next((line for line in self.lines if search(line.code)), None)
+    def line_naming(self, *names: str, called: bool = False) -> Line | None:
+        """Return the first line that has one of some names, ``called`` before a bracket; None for none."""
+        return next((line for line in self.lines if is_named(line.code, names, called=called)), None)
 
     @cached_property
     def code(self) -> str:

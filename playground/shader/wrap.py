@@ -393,7 +393,7 @@ def _without_outputs(kernel: Kernel, arguments: list[tuple[str, str, str]]) -> l
 
 
 def _line_of(kernel: Kernel, name: str) -> Line:
-    return kernel.source.line_with(rf"\b{name}\s*\(") or kernel.source.lines[0]
+    return kernel.source.line_naming(name, called=True) or kernel.source.lines[0]
 
 
 def _check_signature(kernel: TexelKernel) -> None:

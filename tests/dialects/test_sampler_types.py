@@ -70,6 +70,22 @@ def test_the_latest_declaration_counts():
     assert sampler_types(text) == {"iChannel1": "samplerCube"}
 
 
+@pytest.mark.parametrize(
+    ("lookup", "types"),
+    [
+        ("{ vec3 p = vec3(0.0); } c = texture(iChannel0, p);", {}),
+        ("for (vec3 p = vec3(0.0); p.x < 1.0;) c = texture(iChannel0, p);", {"iChannel0": "samplerCube"}),
+        ("Ray ray; c = texture(iChannel0, ray.along);", {"iChannel0": "samplerCube"}),
+        ("ivec3 cell; c = texelFetch(iChannel0, cell, 0);", {"iChannel0": "sampler3D"}),
+        ("c = texture(iChannel0, p / iChannelResolution[0].xy);", {}),
+        ("c = texture(iChannel0, iResolution * p.x);", {"iChannel0": "samplerCube"}),
+    ],
+)
+def test_a_coordinate_has_the_type_of_its_scope(lookup, types):
+    head = "struct Ray { vec3 along; };\nvoid mainImage(out vec4 c, vec2 p) { "
+    assert sampler_types(f"{head}{lookup} }}") == types
+
+
 TAKES = """
 #define SKY iChannel2
 vec3 cube(samplerCube k, vec3 u) { return texture(k, u).rgb; }

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from itertools import zip_longest
 from typing import NamedTuple
 
 _TOKEN = re.compile(
@@ -63,3 +64,14 @@ def as_written(text: str) -> Iterator[Token]:
         yield token._replace(text="#", end=start)
         for inner in tokenize(token.text[1:])[0]:
             yield inner._replace(start=inner.start + start, end=inner.end + start, spelled=inner.start + start)
+
+
+def is_named(line: str, names: Collection[str], *, called: bool = False) -> bool:
+    """Return whether a line has one of some names; ``called``: before a bracket, or at its end."""
+    if not any(name in line for name in names):
+        return False
+    tokens = list(as_written(line))
+    return any(
+        token.text in names and (not called or after is None or after.text == "(")
+        for token, after in zip_longest(tokens, tokens[1:])
+    )
