@@ -78,7 +78,7 @@ def directives(source: SourceText) -> Iterator[list[str]]:
     """Yield the words and marks of each directive of a text, behind its ``#``."""
     for line in source.lines:
         if "#" in line.code and (texts := [token.text for token in as_written(line.code)])[:1] == ["#"]:
-            yield texts[1:]
+            yield texts[1:] or [""]
 
 
 def _version(source: SourceText) -> list[str]:

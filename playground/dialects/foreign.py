@@ -9,10 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 
 from playground.allowed_files import is_file, is_inside, leads_outside
-from playground.dialects.es import Rewritten, version_of
+from playground.dialects.es import Rewritten, directives, version_of
 from playground.errors import Diagnostic, ShaderError, SketchError, nearest
 from playground.paths import GLSL, PART_OF_FILE, shown
 from playground.shader.declarations import Declared, is_declared, takes, uniforms, vertex_outputs
@@ -33,6 +34,7 @@ from playground.shader.kernel import (
 from playground.shader.parameter import Parameter, Sampling
 from playground.shader.reserved_names import ELEMENT
 from playground.shader.source import Line, Origin, SourceText, normalised, read_source_and_origin, read_text
+from playground.shader.syntax.tokens import as_written, is_named, tokenize
 from playground.shader.widgets import Value, Widget
 
 Names = Mapping[str, tuple[str, str]]
@@ -145,20 +147,18 @@ class Made:
 
 
 _COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
-_PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
-_COUNT = re.compile(r"\[\s*(\d{1,9})\s*\]")
+_PICTURES = frozenset(f"u_tex{number}" for number in range(100))
 _MAX_SAMPLERS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
 _MODEL = "MODEL_"
 _PACKS = 420  # the version of GLSL that has all of these
 _PACKING = frozenset(f"{way}{kind}2x16" for way in ("pack", "unpack") for kind in ("Half", "Snorm", "Unorm"))
-_DEFINED = re.compile(r"\s*#\s*define\s+(\w+)")
 _SHADOW_MAP = "#define LIGHT_SHADOWMAP "
 _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
 _SOUNDS = "a made-up sound stands in; a sketch may wire foreign/sound to it"
 _BANDS = "a made-up sound stands in"
 _NO_PANEL = "it is 0, as no panel shows its type"
 _NO_IMAGE = "it reads 0, and nothing stores what it writes"
-_IMAGE = re.compile(r"[iu]?image(?:[123]D|Cube|Buffer|2DRect)\w*")
+_IMAGES = ("image", "iimage", "uimage")  # what begins a type
 
 
 class ForeignKernel:
@@ -256,13 +256,14 @@ class ForeignKernel:
     def _missing(self, source: SourceText) -> list[str]:
         """Return the names of the dialect that a text reads and does not declare."""
         code, declared = source.code, uniforms(source.code)
+        tokens = list(as_written(code))
+        read = {now.text for before, now in pairwise([*tokens[:1], *tokens]) if before.text != "."}
         anywhere = self.rules.declared_anywhere
         return [
             name
             for name in self.rules.names
             if name not in declared
-            and (name in self.shader.named or name in source.names)
-            and (name in self.shader.named or re.search(rf"(?<![.\w]){name}\b", code))
+            and (name in self.shader.named or name in read)
             and not is_declared(code, name, anywhere=anywhere)
         ]
 
@@ -287,11 +288,11 @@ class ForeignKernel:
     def _elements(self) -> Iterator[tuple[str, Declared]]:
         """Yield what a wire feeds of the arrays of samplers: ``maps_0`` is the first of ``maps[4]``."""
         for declared in self.declared.values():
-            count = _COUNT.search(declared.written) if declared.is_array and declared.type in SHAPES else None
-            if count and self._is_read(declared.name):
-                elements = (
-                    f"{declared.name}{ELEMENT}{number}" for number in range(min(int(count[1]), _MAX_SAMPLERS))
-                )
+            texts = [token.text for token in tokenize(declared.written)[0]]
+            if declared.type in SHAPES and texts[1:2] == ["["] and self._is_read(declared.name):
+                count = int(texts[2][:9]) if texts[3:4] == ["]"] and texts[2].isdecimal() else 0
+                numbers = range(min(count, _MAX_SAMPLERS))
+                elements = (f"{declared.name}{ELEMENT}{number}" for number in numbers)
                 yield from ((element, declared) for element in elements if element not in self.source.names)
 
     def _line(self, declared: Declared) -> Line:
@@ -363,7 +364,7 @@ class ForeignKernel:
         for declared in self.declared.values():
             is_given = declared.name in fed or declared.name in self.rules.names or "sampler" in declared.type
             if not is_given and "=" not in declared.written and self._is_read(declared.name):
-                yield declared.name, _NO_IMAGE if _IMAGE.match(declared.type) else _NO_PANEL
+                yield declared.name, _NO_IMAGE if declared.type.startswith(_IMAGES) else _NO_PANEL
 
 
 def unfed_warnings(kernel: ForeignShader, wired: Collection[str]) -> tuple[Diagnostic, ...]:
@@ -383,7 +384,8 @@ def unfed_warnings(kernel: ForeignShader, wired: Collection[str]) -> tuple[Diagn
 def commented_files(source: SourceText) -> Iterator[tuple[Line, str]]:
     """Yield each line that declares ``u_tex0`` or its like with a file in its comment, and the file."""
     for line in source.lines:
-        if _PICTURE.search(line.code) and (match := _COMMENTED_FILE.match(line.comment)):
+        is_picture = line.comment and is_named(line.code, ("uniform",)) and is_named(line.code, _PICTURES)
+        if is_picture and (match := _COMMENTED_FILE.match(line.comment)):
             yield line, match.group(1)
 
 
@@ -400,8 +402,9 @@ def places_of(file: str, line: Line, root: Path) -> tuple[Path, ...]:
 
 def _packing(source: SourceText) -> tuple[str, ...]:
     """Return what packs numbers for a text that does so in a version of GLSL without such functions."""
-    own = {match[1] for match in map(_DEFINED.match, source.code.splitlines()) if match}
-    packs = [n for n in (_PACKING & source.names) - own if not is_declared(source.code, n, anywhere=False)]
+    used = _PACKING & source.names
+    used -= {name for words in directives(source) if used and words[0] == "define" for name in words[1:2]}
+    packs = [name for name in used if not is_declared(source.code, name, anywhere=False)]
     return ("packing.glsl",) if packs and version_of(source) < _PACKS else ()
 
 

@@ -38,6 +38,7 @@ from playground.shader.header import with_axes
 from playground.shader.parameter import Parameter, Sampling, spell
 from playground.shader.preprocessor import live_source
 from playground.shader.source import Line, SourceText
+from playground.shader.syntax.tokens import as_written
 from playground.shader.widgets import Widget
 
 _BEGIN = re.compile(r"(?:\s|//[^\n]*\n)*/\*\s*(?=\{)")
@@ -531,10 +532,10 @@ VERTEX_FILES = (".vs", ".vert")
 
 _MACROS = ("PASSINDEX",)  # other ones of each pass
 _COORDINATE = "in vec2 isf_FragNormCoord;"
-_TAKEN = re.compile(
-    r"(?:vv|isf)_(?:FragNormCoord|vertShaderInit)|IMG_(?:NORM_|THIS_|THIS_NORM_)?PIXEL|IMG_SIZE|PASSINDEX"
+_TAKEN = frozenset(
+    "vv_FragNormCoord vv_vertShaderInit isf_FragNormCoord isf_vertShaderInit IMG_PIXEL IMG_NORM_PIXEL "
+    "IMG_THIS_PIXEL IMG_THIS_NORM_PIXEL IMG_SIZE PASSINDEX".split()
 )
-_PROPERTY = re.compile(r"\b_(\w+)_(imgRect|imgSize|flip)\b")
 _PROPERTIES = {"imgRect": "vec4(0.0, 0.0, IMG_SIZE({0}))", "imgSize": "IMG_SIZE({0})", "flip": "false"}
 _SENTENCE = re.compile(r"(.{3,}?[.!?])(?:\s|$)")
 _MAX_TITLE = 72
@@ -746,7 +747,13 @@ class _Reader:
         code = self.text.source.code + (self.vertex.source.code if self.vertex else "")
         names = {*map(self._called, self.inputs.channels), *map(self._called, self.targets)}
         names |= {p.name for p in self._parameters() if p.type == "sampler2D"}
-        return dict.fromkeys((name, what) for name, what in _PROPERTY.findall(code) if name in names)
+        words = dict.fromkeys(token.text for token in as_written(code))
+        return {
+            (name, what): None
+            for word in words
+            for what in _PROPERTIES
+            if word.endswith(f"_{what}") and (name := word[1 : -len(what) - 1]) in names and word[0] == "_"
+        }
 
 
 _NUMBERS = ("float", "int", "bool")
@@ -754,7 +761,7 @@ _NUMBERS = ("float", "int", "bool")
 
 def _taken(name: str) -> str:
     """Return why a name cannot be an input's, "" where it can."""
-    if name in NAMES or _TAKEN.fullmatch(name):
+    if name in NAMES or name in _TAKEN:
         return "ISF itself gives this name"
     if name.startswith(("k_", "gl_")) or "__" in name:
         return "names that begin with k_ or gl_, or hold __, are taken"

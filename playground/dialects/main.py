@@ -15,13 +15,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from playground.dialects import shadertoy
-from playground.dialects.es import Rewritten, rewritten, version_of
+from playground.dialects.es import Rewritten, directives, rewritten, version_of
 from playground.dialects.foreign import VIEW, Files, Made, Names, Rules, Shader, ShaderChannel
 from playground.shader.declarations import uniforms, vertex_outputs
 from playground.shader.parameter import Sampling
 from playground.shader.preprocessor import WEBGL, Conditions, live_source, macros_of
 from playground.shader.reserved_names import DEPTH, PLAIN_UNIFORMS, SIZES, VALUE
 from playground.shader.source import SourceText
+from playground.shader.syntax.tokens import is_named
 
 LEVELS = 12
 """The most that a pyramid goes down."""
@@ -194,9 +195,9 @@ class _Viewer:
 
     def _size(self, viewer_pass: _Pass) -> Size:
         """Return the size in the comment behind a sampler's declaration: texels, or shares of the picture."""
-        declared = re.compile(rf"\buniform\b.*\bsampler2D\s+(?:{'|'.join(viewer_pass.samplers)})\s*;")
         for line in self.text.source.lines:
-            if declared.search(line.code) and (match := _SIZE.match(line.comment)):
+            is_of_pass = is_named(line.code, ("uniform",)) and is_named(line.code, viewer_pass.samplers)
+            if is_of_pass and (match := _SIZE.match(line.comment)):
                 if match[1]:
                     return f"max({int(match[1])}, 1)", f"max({int(match[2])}, 1)"
                 wide, tall = (min(float(text), _MAX_FACTOR) for text in (match[3], match[4] or match[3]))
@@ -376,9 +377,7 @@ def _defines(source: SourceText) -> tuple[str, ...]:
     """Return glslViewer's own macros where its names occur."""
     result = ["#define GLSLVIEWER 1", "#define PLATFORM_LINUX"]
     result = result if any(name.startswith("u_") for name in source.names) else []
-    tested = {
-        name for line in source.lines if _CONDITION.match(line.code) for name in _NAME.findall(line.code)
-    }
+    tested = {name for words in directives(source) if words[0] in _CONDITIONS for name in words[1:]}
     for name, lines in _SHADOW_MAP.items():  # where a text asks for it first, it does without
         if name in source.names and name not in tested:
             result += [
@@ -387,7 +386,7 @@ def _defines(source: SourceText) -> tuple[str, ...]:
     return (*result, "#define BACKGROUND") if "BACKGROUND" in source.names else tuple(result)
 
 
-_CONDITION, _NAME = re.compile(r"\s*#\s*(?:el)?if"), re.compile(r"[A-Za-z_]\w*")
+_CONDITIONS = ("if", "ifdef", "ifndef", "elif")
 _SHADOW_MAP = {
     "LIGHT_SHADOWMAP": ["#define LIGHT_SHADOWMAP u_lightShadowMap", "uniform sampler2D u_lightShadowMap;"],
     "LIGHT_SHADOWMAP_SIZE": ["#define LIGHT_SHADOWMAP_SIZE 2048.0"],
