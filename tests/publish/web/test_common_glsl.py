@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
+import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -15,6 +18,7 @@ from ...loading import load
 from ...sketch_texts import map_of_height
 from .texts import kernels
 
+GLSLANG = shutil.which("glslangValidator")
 CONVERSIONS = {
     "float a = 1;": "float a = 1.0;",
     "float a = -1 + 2 * n;": "float a = float(-1 + 2 * n);",
@@ -34,7 +38,7 @@ CONVERSIONS = {
     "float a = taken(1, n);": "float a = taken(1.0, n);",
     "uint u = n + 1u;": "uint u = uint(n) + 1u;",
     "float a = SIDES * x;": "float a = float(SIDES) * x;",
-    "float a = known(1) * 2;": "float a = known(1) * 2;",
+    "float a = known(1) * 2;": "float a = float(known(1) * 2);",
     "for (float f = 0; f < 3; f++) x += f * 2;": "for (float f = 0.0; f < 3.0; f++) x += f * 2.0;",
     "w = m * w * 2;": "w = m * w * 2.0;",
     "float a = (1 + n) * x;": "float a = float((1 + n)) * x;",
@@ -105,6 +109,38 @@ def test_a_form_of_desktops_has_another(written: str):
     result = in_common_glsl(written)
     assert result.split() == FORMS[written].split()
     assert result.count("\n") == written.count("\n")
+
+
+HEAD = """#version 420
+uniform sampler2D s;
+uniform float t;
+uniform int k;
+out vec4 c;
+"""
+BODY = (
+    "void main() {{\n    float x = t; int n = k; uint u = 3u; vec4 w = vec4(t);\n    {}\n    c = w * x;\n}}\n"
+)
+DESKTOP = tomllib.loads(Path(__file__).with_name("desktop.toml").read_text("utf-8"))
+TEXTS = {name: BODY.format(text) for name, text in DESKTOP["statements"].items()} | DESKTOP["texts"]
+TEXTS["long_sum"] = BODY.format(f"x = {' + '.join(['1'] * 400)} + t;")
+
+
+@pytest.mark.skipif(GLSLANG is None, reason="needs glslangValidator")
+def test_what_desktops_take_pages_take(tmp_path: Path):
+    for name, text in TEXTS.items():
+        common = in_common_glsl(HEAD + text)
+        assert common.count("\n") == (HEAD + text).count("\n"), name
+        (tmp_path / f"{name}.desktop.frag").write_text(HEAD + text)
+        es = common.replace("#version 420", "#version 300 es\nprecision highp float;")
+        (tmp_path / f"{name}.es.frag").write_text(es)
+    files = sorted(tmp_path.iterdir())
+    done = subprocess.run([str(GLSLANG), *files], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, "\n".join(line for line in done.stdout.split("\n") if line)
+
+
+def test_macro_whose_calls_want_different_numbers_stays():
+    text = "#define ADD(a) (a + 1)\nuniform float t;\nvoid main() { int i = ADD(2); float f = ADD(t); }\n"
+    assert in_common_glsl(text) == text
 
 
 def test_a_texture_of_one_dimension_is_a_row():
