@@ -38,7 +38,7 @@ from playground.sketch.warnings import unheeded
 
 if TYPE_CHECKING:
     from playground.shader.declarations import Declarations, Variable
-    from playground.shader.preprocessor import Token
+    from playground.shader.syntax.tokens import Token
 
 
 PANEL = "the panel"
@@ -201,15 +201,16 @@ def unwritten(kernel: Kernel) -> tuple[Diagnostic, ...]:
     if isinstance(kernel, PlainFragment):
         return ()
     from playground.shader.declarations import Declarations
-    from playground.shader.preprocessor import readings
+    from playground.shader.syntax.preprocessor import readings
 
     diagnostics: dict[Diagnostic, None] = {}
     for tokens in readings(kernel.source.code):
         reads = _Reads(Declarations(tokens))
         for name, token in reads.before_writing():
-            line = kernel.source.lines[token.line]
+            before = kernel.source.code[: token.start]
+            line, column = kernel.source.lines[before.count("\n")], token.start - before.rfind("\n")
             message = f"'{name}' is read here before anything is written to it, so its value is undefined"
-            diagnostics[line.diagnostic(message, token.start + 1, "warning")] = None
+            diagnostics[line.diagnostic(message, column, "warning")] = None
     return tuple(diagnostics)
 
 

@@ -10,12 +10,14 @@ blanked already, and so are its branches that are off.
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import groupby
+from itertools import accumulate, groupby
 
 from playground.memo import TEXTS
-from playground.shader.preprocessor import Token, readings, value_of
+from playground.shader.syntax.preprocessor import readings, value_of
+from playground.shader.syntax.tokens import Token
 
 BUILT_IN = re.compile(r"float|double|u?int|bool|[biud]?vec[234]|d?mat[234](?:x[234])?")
 """Types with a value that GLSL has by itself; samplers and images have none."""
@@ -418,8 +420,9 @@ def uniforms(code: str) -> Mapping[str, Declared]:
 def expanded(code: str) -> str:
     """Return a text, as many lines, without its directives and with the macros expanded."""
     lines = _DIRECTIVE.sub("", code).split("\n")
+    starts = [0, *accumulate(len(line) + 1 for line in code.split("\n"))]
     for tokens in readings(code):
-        for line, some in groupby(tokens, key=lambda token: token.line):
+        for line, some in groupby(tokens, key=lambda token: bisect_right(starts, token.start) - 1):
             texts = [token.text for token in some]
             if "".join(texts) != "".join(lines[line].split()):
                 lines[line] = " ".join(texts)

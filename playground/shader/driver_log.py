@@ -337,13 +337,13 @@ def whereabouts(message: str, source: SourceText, line: Line | None, kernel: Ker
 def _places(source: SourceText) -> dict[str, set[tuple[str, int]]]:
     """Return the names that a text declares, each with the kinds and the lines, from 0, of where."""
     from playground.shader.declarations import Declarations
-    from playground.shader.preprocessor import readings
+    from playground.shader.syntax.preprocessor import readings
 
     places: dict[str, set[tuple[str, int]]] = defaultdict(set)
     for tokens in readings(source.code):
         for name, kind, at in Declarations(tokens).names():
             if kind != "member":
-                places[name].add((kind, tokens[at].line))
+                places[name].add((kind, source.code.count("\n", 0, tokens[at].start)))
     return places
 
 

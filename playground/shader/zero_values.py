@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 from playground.memo import TEXTS
 from playground.shader.declarations import BUILT_IN, Declarations, Function, Type, Variable
-from playground.shader.preprocessor import Call, Token, readings
-from playground.shader.stage_recipe import VERSION_NUMBER
+from playground.shader.syntax.preprocessor import readings
+from playground.shader.syntax.tokens import Token
 from playground.shader.wrap import Wrapped
 
 _MAX_WRITTEN = 64  # elements of an array that are written out; more are set by a loop
@@ -37,26 +38,25 @@ def with_zeros(wrapped: Wrapped) -> Wrapped:
 @TEXTS.cached()
 def zeroed(text: str) -> str:
     """Return a stage's text with its variables beginning at 0, as many lines."""
-    version = VERSION_NUMBER.search(text)
-    edits: dict[tuple[int, int, int], str] = {}
-    for tokens in readings(text, int(version[1]) if version else 0):
-        for index, new in _Zeros(tokens).edits():
-            edits.setdefault(index, new)
-    lines = text.split("\n")
-    for (line, start, end), new in sorted(edits.items(), reverse=True):
-        lines[line] = f"{lines[line][:start]}{new}{lines[line][end:]}"
-    return "\n".join(lines)
+    edits: dict[tuple[int, int], str] = {}
+    for tokens in readings(text):
+        for place, new in _Zeros(text, tokens).edits():
+            edits.setdefault(place, new)
+    for (start, end), new in sorted(edits.items(), reverse=True):
+        text = f"{text[:start]}{new}{text[end:]}"
+    return text
 
 
 @dataclass
 class _Zeros:
     """What is inserted into one reading of a text."""
 
+    text: str
     tokens: tuple[Token, ...]
     behind: dict[int, str] = field(default_factory=dict)  # index of a token → what is inserted behind it
 
-    def edits(self) -> Iterator[tuple[tuple[int, int, int], str]]:
-        """Yield line, first column and last of what is replaced, and by what."""
+    def edits(self) -> Iterator[tuple[tuple[int, int], str]]:
+        """Yield the span of what is replaced, and by what."""
         self.declared = Declarations(self.tokens)
         if not self.declared.is_balanced:
             return
@@ -73,12 +73,10 @@ class _Zeros:
         calls: set[int] = set()
         for index, new in self.behind.items():
             token = self.tokens[index]
-            following = self.tokens[index + 1] if index + 1 < len(self.tokens) else None
-            if token.call is not None and following is not None and following.call is token.call:
-                calls.add(id(token.call))
+            if self._goes_on(index):
+                calls.add(token.start)
             else:
-                end = token.call.end if token.call is not None else token.end
-                yield (token.line, end, end), new
+                yield (token.end, token.end), new
         yield from self._written_out(calls)
 
     def _begin(self, variable: Variable) -> str:
@@ -140,22 +138,35 @@ class _Zeros:
             return f"{head} {{{inner} }}" if inner else ""
         return "".join(self._statements(f"{target}.{name}", member, depth) for name, member in type_.members)
 
-    def _written_out(self, calls: Collection[int]) -> Iterator[tuple[tuple[int, int, int], str]]:
-        """Yield the calls of macros within which something is inserted, expanded.
+    def _goes_on(self, index: int) -> bool:
+        """Return whether a token and the next one stand for the same call of a macro."""
+        token = self.tokens[index]
+        return bool(token.macros) and any(
+            following.start == token.start for following in self.tokens[index + 1 : index + 2]
+        )
 
-        One that would be expanded again stays as it is.
+    def _written_out(self, calls: Collection[int]) -> Iterator[tuple[tuple[int, int], str]]:
+        """Yield the calls of macros within which something is inserted, expanded; ``calls`` are their places.
+
+        Within one, a macro that names itself is written as its name. What takes arguments and names itself,
+        or is on several lines, stays as it is.
         """
-        texts: dict[int, list[str]] = {}
-        wholes: dict[int, Call] = {}
-        again: set[int] = set()
+        texts: dict[int, list[int]] = {}
         for index, token in enumerate(self.tokens):
-            if (call := token.call) is not None and id(call) in calls:
-                following = self.tokens[index + 1 : index + 2]
-                is_last = not following or following[0].call is not call
-                new = "" if is_last else self.behind.get(index, "")
-                texts.setdefault(id(call), []).append(f"{token.text}{new}")
-                wholes[id(call)] = call
-                again |= {id(call)} if token.text in token.hidden else set()
-        for key, call in wholes.items():
-            if call.is_whole and key not in again:
-                yield (call.line, call.start, call.end), " ".join(texts[key])
+            if token.start in calls:
+                texts.setdefault(token.start, []).append(index)
+        for start, indices in texts.items():
+            tokens = [self.tokens[index] for index in indices]
+            again = frozenset(token.text for token in tokens if token.text in token.macros)
+            parts, name = list[str](), ""
+            for index, token in zip(indices, tokens, strict=True):
+                inside = min(token.macros & again, default="")
+                if not inside or inside != name:
+                    parts.append(inside or token.text)
+                name = inside
+                if self._goes_on(index):
+                    parts[-1] += self.behind.get(index, "")
+            end, of_all = tokens[0].end, frozenset.intersection(*(token.macros for token in tokens))
+            takes = any(one.text in again and two.text == "(" for one, two in pairwise(tokens))
+            if not takes and not again & of_all and "\n" not in self.text[start:end]:
+                yield (start, end), " ".join(parts)

@@ -73,7 +73,8 @@ def test_an_expression(condition, holds):
         "__VERSION__ > 120",
         "GL_OES_standard_derivatives",
         "defined(GL_EXT_x)",
-        "F(1)",
+        "F",
+        "G(1)",
         "1 +",
         "1 / 0",
         "(1",
@@ -94,6 +95,7 @@ def test_macros_of_the_text_count_where_they_are_defined():
     unsure = "#ifdef GL_X\n#define A\n#endif\n#ifdef A\nx\n#endif"
     assert live(unsure) == unsure.split("\n")
     assert live("#ifdef GL_ES\nx\n#endif\ny") == ["y"]
+    assert live("#define F(x) x + 1\n#if F(1) == 2\nhigh\n#endif")[-1] == "high"
 
 
 @pytest.mark.parametrize("text", ["#if 1\nx", "x\n#endif", "#else\n#endif", "#if 1\n#else\n#else\n#endif"])

@@ -4,25 +4,31 @@ A macro's tokens have the place of the whole call that they stand for, the outer
 macro's definition spells them. A macro that names itself stays, as C has it. ``#version`` defines
 ``__VERSION__`` and ``GL_ES``. What else the driver defines (``GL_…``) is not known here.
 Numbers in conditions are GLSL 4.60's, section 3.3; an undefined name is 0.
+
+A condition is judged with all of its branches. Where that cannot be, since what it asks for is unknown or it
+is no expression, every branch is there; and of a text whose conditions do not close, every branch of all.
 """
 
 from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from playground.memo import TEXTS
 from playground.shader.syntax.tokens import Comment, Token, tokenize
 
 _DIRECTIVE = re.compile(r"#\s*(\w*)\s*(.*)", re.DOTALL)
 _DEFINE = re.compile(r"([A-Za-z_]\w*)(\(([^)]*)\))?(.*)", re.DOTALL)
 _SKIPPED = re.compile(r"/\*.*?\*/|\\\r?\n", re.DOTALL)
+_NAME = re.compile(r"[A-Za-z_]\w*")
 _VERSION = re.compile(r"(\d+)(?:\s+(\w+))?")
 _OF_THE_DRIVER = re.compile(r"(?:GL_(?!ES$)|__)\w*")
 _CONDITIONS = frozenset({"if", "ifdef", "ifndef", "elif", "else", "endif"})
 _MAX_EXPANDED_TOKENS = 200_000  # macros may double without end
-_MAX_NESTING = 64
+_MAX_CONDITION_TOKENS = 4_096  # of macros in one condition
+_MAX_NESTING = 32  # of a condition's brackets
 _MAX_SHIFT = 62
 
 
@@ -53,9 +59,8 @@ class Preprocessed:
 
     tokens: list[Token] = field(default_factory=list)
     comments: list[Comment] = field(default_factory=list)
-    directives: list[Token] = field(
-        default_factory=list
-    )  # those in force, conditions that were judged excepted
+    directives: list[Token] = field(default_factory=list)  # those in force, but for ``judged``
+    judged: list[Token] = field(default_factory=list)  # those of conditions that were judged
     macros: list[Macro] = field(default_factory=list)  # each definition in force
     inactive: list[tuple[int, int]] = field(default_factory=list)  # spans that conditions leave out
     expansions: list[Expansion] = field(default_factory=list)
@@ -69,14 +74,46 @@ def preprocess(
     """Return the tokens of a text behind the preprocessor; it never raises.
 
     ``defined``: the text of macros that are defined before it. ``all_branches``: no condition is judged, and
-    the tokens of every branch are there. ``unknown``: whether what only the driver knows is defined.
+    the tokens of every branch are there. ``unknown``: whether what only the driver knows is defined, as 1.
     """
     tokens, comments = tokenize(text)
     result = Preprocessed(comments=comments)
     if not defined and not any(token.kind == "directive" for token in tokens):
         result.tokens = tokens
     else:
-        _Preprocessor(result, tokens, defined or {}, all_branches, unknown).run()
+        _Preprocessor(result, tokens, defined or {}, unknown, all_branches=all_branches).run()
+    return result
+
+
+@TEXTS.cached(weight=512)  # tokens are many
+def readings(text: str) -> tuple[tuple[Token, ...], ...]:
+    """Return the tokens of a text, of one reading or of two: treat them as constant.
+
+    What the driver defines (``GL_…``) is not known here: there is a reading without, and one with all of it
+    where that makes a difference. Empty where its macros expand to too much.
+    """
+    results = [preprocess(text)]
+    if results[0].depends_on_driver:
+        results.append(preprocess(text, unknown=True))
+    if any(result.is_truncated for result in results):
+        return ()
+    return tuple(dict.fromkeys(tuple(result.tokens) for result in results))
+
+
+def judge(
+    directives: Sequence[Token],
+    defined: Mapping[str, str],
+    *,
+    unsure: Collection[str] = (),
+    unknown: bool | None = None,
+) -> Preprocessed:
+    """Judge the conditions among a text's directives; ``defined`` are macros as in ``preprocess``.
+
+    Whether the driver's names, and those that are ``unsure``, are defined is ``unknown``; where that is None,
+    what depends on them is not judged.
+    """
+    result = Preprocessed()
+    _Preprocessor(result, directives, defined, unknown, unsure).run()
     return result
 
 
@@ -84,9 +121,8 @@ def preprocess(
 class _Group:
     """An open condition."""
 
-    is_live: bool  # its present branch
-    was_live: bool  # any of its branches so far
-    around: bool  # the text around it
+    chosen: int | None  # index of the directive whose branch is there; -1: none is; None: every branch is
+    around: bool  # the text around it is there
 
 
 class _Preprocessor:
@@ -95,16 +131,21 @@ class _Preprocessor:
         result: Preprocessed,
         tokens: Sequence[Token],
         defined: Mapping[str, str],
-        all_branches: bool,
-        unknown: bool,
+        unknown: bool | None,
+        unsure: Collection[str] = (),
+        *,
+        all_branches: bool = False,
     ) -> None:
         self._result = result
         self._tokens = tokens
         self._index = 0
         self._pending: list[Token] = []  # of macros, the next one last
         self._left = _MAX_EXPANDED_TOKENS
-        self._all_branches = all_branches
         self._unknown = unknown
+        self._unsure = set(unsure)  # among them names that a branch which may be left out defines
+        branches = None if all_branches else _branches_of(tokens)
+        self._branches: Mapping[int, list[int]] = branches or {}
+        self._all_branches = branches is None
         self._groups: list[_Group] = []
         self._is_live = True
         self._inactive_since = 0
@@ -150,6 +191,7 @@ class _Preprocessor:
             if closing is None:
                 rest = [opening, *(one for argument in given for one in argument)]
                 self._pending += reversed(rest)
+                self._spend(len(rest))  # which are read again, once for each call that stays open
                 return False
             end, hidden = max(end, closing.end), hidden & closing.macros
             padded = [*given, *([] for _ in macro.parameters)]
@@ -157,13 +199,18 @@ class _Preprocessor:
         if not token.macros:
             self._result.expansions.append(Expansion(macro.name, token.start, end))
         expanded = self._substituted(macro, arguments, token.start, end, hidden | {macro.name})
-        self._left -= len(expanded)
-        if self._left < 0:
-            self._result.is_truncated = True
-            self._macros.clear()
+        if not self._spend(len(expanded)):
             return False
         self._pending += reversed(expanded)
         return True
+
+    def _spend(self, count: int) -> bool:
+        """Count tokens of macros; return whether there may be so many. Else no more macros are expanded."""
+        self._left -= count
+        if self._left < 0:
+            self._result.is_truncated = True
+            self._macros.clear()
+        return self._left >= 0
 
     def _arguments(self) -> tuple[list[list[Token]], Token | None]:
         """Take a call's arguments behind its bracket; return them and the closing bracket."""
@@ -220,7 +267,7 @@ class _Preprocessor:
         """Return an argument with the macros in it expanded."""
         if not any(token.text in self._macros and token.text not in token.macros for token in tokens):
             return tokens
-        inner = _Preprocessor(Preprocessed(), tokens, {}, False, self._unknown)
+        inner = _Preprocessor(Preprocessed(), tokens, {}, self._unknown)
         inner._macros, inner._left = self._macros, self._left
         inner.run()
         self._left = inner._left
@@ -232,11 +279,8 @@ class _Preprocessor:
     def _obey(self, token: Token) -> None:
         match = _DIRECTIVE.match(token.text)
         word, rest = (match[1], match[2]) if match else ("", "")
-        if word in _CONDITIONS:
-            if self._all_branches:
-                self._result.directives.append(token)
-            else:
-                self._judge(token, word, rest)
+        if word in _CONDITIONS and not self._all_branches:
+            self._enter(token, word)
             return
         if not self._is_live:
             return
@@ -244,12 +288,21 @@ class _Preprocessor:
         if word == "define" and (define := _DEFINE.match(rest)):
             assert match is not None
             self._define(token, define, token.start + match.start(2))
-        elif word == "undef" and rest.split() and not self._all_branches:
-            self._macros.pop(rest.split()[0], None)
+        elif word == "undef" and (name := _NAME.match(rest)):
+            if self._is_uncertain:
+                self._unsure.add(name[0])
+            else:
+                self._unsure.discard(name[0])
+                self._macros.pop(name[0], None)
         elif word == "version" and (version := _VERSION.match(rest)):
             self._macros.setdefault("__VERSION__", _predefined("__VERSION__", version[1]))
             if version[2] == "es" or version[1] == "100":
                 self._macros.setdefault("GL_ES", _predefined("GL_ES", "1"))
+
+    @property
+    def _is_uncertain(self) -> bool:
+        """Return whether what is read may be left out."""
+        return self._all_branches or any(group.chosen is None for group in self._groups)
 
     def _define(self, token: Token, define: re.Match[str], at: int) -> None:
         offset = at + define.start(4)
@@ -264,38 +317,49 @@ class _Preprocessor:
         macro = Macro(define[1], parameters, body, at, token.start, token.end)
         self._macros[macro.name] = macro
         self._result.macros.append(macro)
+        if self._is_uncertain:
+            self._unsure.add(macro.name)
+        else:
+            self._unsure.discard(macro.name)
 
-    def _judge(self, token: Token, word: str, rest: str) -> None:
+    def _enter(self, token: Token, word: str) -> None:
+        """Go on to the branch of a condition that a directive begins, or behind the condition."""
         was_live = self._is_live
         if word.startswith("if"):
-            holds = was_live and self._holds(word, rest)
-            self._groups.append(_Group(holds, holds, was_live))
-        elif not self._groups:
-            return
-        elif word == "endif":
-            self._is_live = self._groups.pop().around
+            chosen = self._choice(self._branches[self._index - 1]) if was_live else -1
+            self._groups.append(_Group(chosen, was_live))
+        group = self._groups[-1]
+        if word == "endif":
+            self._groups.pop()
+            self._is_live = group.around
         else:
-            group = self._groups[-1]
-            group.is_live = (
-                group.around and not group.was_live and (word == "else" or self._holds("if", rest))
-            )
-            group.was_live |= group.is_live
-        if word != "endif":
-            self._is_live = self._groups[-1].is_live
-        if was_live and not self._is_live:
-            self._inactive_since = token.end
-        elif self._is_live and not was_live:
-            self._result.inactive.append((self._inactive_since, token.start))
-        elif not was_live and word in ("elif", "else") and self._groups[-1].around:
-            self._result.inactive.append((self._inactive_since, token.start))
-            self._inactive_since = token.end
+            self._is_live = group.around and group.chosen in (None, self._index - 1)
+        if group.around:
+            (self._result.directives if group.chosen is None else self._result.judged).append(token)
+            if not was_live:
+                self._result.inactive.append((self._inactive_since, token.start))
+            if not self._is_live:
+                self._inactive_since = token.end
 
-    def _holds(self, word: str, rest: str) -> bool:
+    def _choice(self, branches: Sequence[int]) -> int | None:
+        """Return the index of the directive whose branch is there: see ``_Group``."""
+        for index in branches:
+            match = _DIRECTIVE.match(self._tokens[index].text)
+            assert match is not None
+            holds = match[1] == "else" or self._holds(match[1], match[2])
+            if holds is None:
+                return None
+            if holds:
+                return index
+        return -1
+
+    def _holds(self, word: str, rest: str) -> bool | None:
         tokens = tokenize(_SKIPPED.sub(" ", rest))[0]
-        if word == "if":
-            return bool(_Condition(self._condition_tokens(tokens)).value())
-        is_defined = bool(tokens) and bool(self._is_defined(tokens[0].text))
-        return is_defined == (word == "ifdef")
+        if word not in ("ifdef", "ifndef"):
+            number = _Condition(self._condition_tokens(tokens)).value()
+            return None if number is None else bool(number)
+        is_defined = self._is_defined(tokens[0].text) if tokens else None
+        return None if is_defined is None else is_defined == (word == "ifdef")
 
     def _condition_tokens(self, tokens: list[Token]) -> list[str | None]:
         """Return a condition's tokens, macros expanded, ``defined`` answered; None: not known."""
@@ -306,25 +370,57 @@ class _Preprocessor:
             if token.text == "defined":
                 has_bracket = index + 1 < len(tokens) and tokens[index + 1].text == "("
                 index += 1 + has_bracket
-                name = tokens[index].text if index < len(tokens) else ""
-                plain.append(token._replace(text=str(int(self._is_defined(name))), kind="number"))
+                is_defined = self._is_defined(tokens[index].text if index < len(tokens) else "")
+                text, kind = ("", "word") if is_defined is None else (str(int(is_defined)), "number")
+                plain.append(token._replace(text=text, kind=kind))
                 index += has_bracket
             else:
                 plain.append(token)
             index += 1
-        expanded = self._expanded(plain)
-        return [self._number(token) if token.kind == "word" else token.text for token in expanded]
+        inner = _Preprocessor(Preprocessed(), plain, {}, self._unknown)
+        inner._macros = {name: macro for name, macro in self._macros.items() if name not in self._unsure}
+        inner._left = _MAX_CONDITION_TOKENS
+        inner.run()
+        if inner._result.is_truncated:
+            return []
+        return [self._number(one.text) if one.kind == "word" else one.text for one in inner._result.tokens]
 
-    def _number(self, token: Token) -> str | None:
-        if token.text not in self._macros and self._is_defined(token.text):
+    def _number(self, word: str) -> str | None:
+        """Return what a word that is no macro's call stands for; None where that cannot be known."""
+        if not word or (word in self._macros and word not in self._unsure):  # it names itself
             return None
-        return "0"
+        is_defined = self._is_defined(word)
+        return None if is_defined is None else str(int(is_defined))
 
-    def _is_defined(self, name: str) -> bool:
+    def _is_defined(self, name: str) -> bool | None:
         if name not in self._macros and _OF_THE_DRIVER.fullmatch(name):
             self._result.depends_on_driver = True
             return self._unknown
-        return name in self._macros
+        return self._unknown if name in self._unsure else name in self._macros
+
+
+def _branches_of(tokens: Sequence[Token]) -> dict[int, list[int]] | None:
+    """Return the directives of each condition, by the index of its first; None where one does not close."""
+    branches: dict[int, list[int]] = {}
+    stack: list[list[int]] = []
+    has_else: list[bool] = []
+    for index, token in enumerate(tokens):
+        match = _DIRECTIVE.match(token.text) if token.kind == "directive" else None
+        word = match[1] if match else ""
+        if word in ("if", "ifdef", "ifndef"):
+            stack.append([index])
+            has_else.append(False)
+        elif word in _CONDITIONS:
+            if not stack or (word != "endif" and has_else[-1]):
+                return None
+            if word == "endif":
+                group = stack.pop()
+                branches[group[0]] = group
+                has_else.pop()
+            else:
+                stack[-1].append(index)
+                has_else[-1] = word == "else"
+    return None if stack else branches
 
 
 def _predefined(name: str, meaning: str) -> Macro:
@@ -354,6 +450,11 @@ _LEVELS: tuple[Mapping[str, Callable[[int, int], int]], ...] = (
     {"*": operator.mul, "/": _quotient, "%": lambda left, right: left - _quotient(left, right) * right},
 )
 """Operators of two numbers, those that bind least first."""
+
+
+def value_of(text: str) -> int | None:
+    """Return the number that an expression without names is; None for what is none."""
+    return _Condition([token.text for token in tokenize(text)[0]]).value()
 
 
 class _NoNumber(Exception):

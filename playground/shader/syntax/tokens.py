@@ -75,3 +75,20 @@ def is_named(line: str, names: Collection[str], *, called: bool = False) -> bool
         token.text in names and (not called or after is None or after.text == "(")
         for token, after in zip_longest(tokens, tokens[1:])
     )
+
+
+def without_comments(text: str) -> str:
+    """Return a text with blanks in place of its comments: as long, on the same lines."""
+    if "/" not in text:
+        return text
+    tokens, comments = tokenize(text)
+    spans = [(comment.start, comment.end) for comment in comments]
+    for token in tokens:
+        if token.kind == "directive" and "/*" in token.text:
+            offset = token.start + 1
+            spans += [(one.start + offset, one.end + offset) for one in tokenize(token.text[1:])[1]]
+    parts, end = list[str](), 0
+    for start, after in sorted(spans):
+        parts += [text[end:start], "\n".join([" " * len(line) for line in text[start:after].split("\n")])]
+        end = after
+    return "".join([*parts, text[end:]])
