@@ -7,9 +7,11 @@ needs no table of types for that.
 
 from __future__ import annotations
 
+import gc
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from playground.shader.syntax.nodes import (
@@ -119,13 +121,26 @@ def parse(text: str, defined: Mapping[str, str] | None = None, *, all_branches: 
     has judged. All branches are read at once; where that is no GLSL, the judged text is, and each span that
     it leaves out apart, in ``branches``.
     """
-    tree = _parsed(text, preprocess(text, defined, all_branches=all_branches))
-    if all_branches and tree.errors:
-        judged = _parsed(text, preprocess(text, defined))
-        if judged.preprocessed.inactive and len(judged.errors) <= len(tree.errors):
-            judged.branches = [_branch(text, *span) for span in judged.preprocessed.inactive]
-            return judged
+    with collector_paused():
+        tree = _parsed(text, preprocess(text, defined, all_branches=all_branches))
+        if all_branches and tree.errors:
+            judged = _parsed(text, preprocess(text, defined))
+            if judged.preprocessed.inactive and len(judged.errors) <= len(tree.errors):
+                judged.branches = [_branch(text, *span) for span in judged.preprocessed.inactive]
+                return judged
     return tree
+
+
+@contextmanager
+def collector_paused() -> Iterator[None]:
+    """Pause the cyclic garbage collector: for the many nodes of a tree it would run often, and in vain."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 def _parsed(text: str, preprocessed: Preprocessed) -> Tree:

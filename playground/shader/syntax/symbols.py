@@ -32,7 +32,7 @@ from playground.shader.syntax.nodes import (
     children,
     walk,
 )
-from playground.shader.syntax.parser import Tree, parse
+from playground.shader.syntax.parser import Tree, collector_paused, parse
 
 
 @dataclass(slots=True, eq=False)
@@ -120,7 +120,8 @@ def resolve(tree: Tree) -> Symbols:
 @TEXTS.cached(weight=256)  # nodes and tokens are many
 def symbols_of(text: str) -> Symbols:
     """Return the symbols of a text whose conditions the text itself decides; treat them as constant."""
-    return resolve(parse(text))
+    with collector_paused():
+        return resolve(parse(text))
 
 
 class _Resolver:
