@@ -29,8 +29,8 @@ float near(float moon, ivec2 t) { return max(moon, 1.0) * (moon + float(t.x)); }
 float kernel(ivec2 t) { vec2 sun = vec2(2.0, 3.0); return near(sun.x, ivec2(sun)); }
 float other(ivec2 t) { return ■texelFetch(sun, t, 0).r + ■texelFetch(moon, t, 0).r; }
 
-//// in brackets: moon
-float at(sampler2D which, ivec2 t) { return texelFetch(which, t, 0).r; }
+//// in brackets: moon sun
+float at(sampler2D which, ivec2 t) { return ■texelFetch(which, t, 0).r; }
 float kernel(ivec2 t) { return at((sun), t) + ■texelFetch(moon, t, 0).r; }
 
 //// by another function of GLSL: 
@@ -66,24 +66,24 @@ float kernel(ivec2 t) { return at(sun, t) + ■texelFetch(moon, t, 0).r; }
 float at(sampler2D which, ivec2 t) { return texelFetch(which, t, 0).r; }
 float kernel(ivec2 t) { return ■texelFetch(moon, t, 0).r; }
 
-//// by a macro: 
+//// by a macro: moon sun
 #define AT(t) texelFetch(sun, t, 0)
 float kernel(ivec2 t) { return AT(t).r; }
 
-//// by a macro that is handed it: 
+//// by a macro that is handed it: moon sun
 #define AT(s) texelFetch(s, ivec2(0), 0)
 float kernel(ivec2 t) { return AT(sun).r; }
 
-//// by a function that a macro calls: 
-float at(sampler2D which) { return texelFetch(which, ivec2(0), 0).r; }
+//// by a function that a macro calls: moon sun
+float at(sampler2D which) { return ■texelFetch(which, ivec2(0), 0).r; }
 #define FIRST at
 float kernel(ivec2 t) { return FIRST(sun) + at(moon); }
 
-//// by what a macro makes of the name: 
+//// by what a macro makes of the name: moon
 #define texelFetch(s, p, l) textureLod(s, vec2(p), 0.0)
 float kernel(ivec2 t) { return texelFetch(sun, t, 0).r; }
 
-//// by a function that returns several numbers: 
+//// by a function that returns several numbers: moon
 float[2] two(sampler2D which, vec2 p) { return float[2](textureLod(which, p, 0.0).r, 0.0); }
 float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t))[0]; }
 
@@ -92,18 +92,18 @@ float two(sampler2D
     which, vec2 p) { return textureLod(which, p, 0.0).r; }
 float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t)); }
 
-//// by a function whose argument has a macro's type: 
+//// by a function whose argument has a macro's type: moon
 #define Map sampler2D
 float two(Map which, vec2 p) { return textureLod(which, p, 0.0).r; }
 float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t)); }
 
-//// by a function behind a macro: 
+//// by a function behind a macro: moon
 #define SQUARE(T) T square(T x) { return x * x; }
 SQUARE(vec2)
 float two(sampler2D which, vec2 p) { return textureLod(which, p, 0.0).r; }
 float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t)); }
 
-//// by a function behind a head that is written twice: 
+//// by a function behind a head that is written twice: moon
 #if 1
 float one(float x) {
 #else
@@ -113,11 +113,29 @@ float one(float x, float y) {
 float two(sampler2D which, vec2 p) { return textureLod(which, p, 0.0).r; }
 float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t)); }
 
-//// by a function with brackets in its arguments: 
+//// by a function with brackets in its arguments: moon
 float two(float w[(2)], sampler2D which) { return textureLod(which, vec2(w[0]), 0.0).r; }
 float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(float[2](0.1, 0.2), sun); }
 
-//// by the text's own function of that name: 
+//// by a branch that is off: moon sun
+float kernel(ivec2 t) {
+#if 0
+    return textureLod(sun, vec2(t), 0.0).r;
+#else
+    return ■texelFetch(sun, t, 0).r;
+#endif
+}
+
+//// by a branch that depends on the driver: 
+float kernel(ivec2 t) {
+#ifdef GL_EXT_gpu_shader4
+    return textureLod(sun, vec2(t), 0.0).r;
+#else
+    return texelFetch(sun, t, 0).r;
+#endif
+}
+
+//// by the text's own function of that name: moon
 vec4 texelFetch(sampler2D which, ivec2 p, int l) { return textureLod(which, vec2(p), 0.0); }
 float kernel(ivec2 t) { return texelFetch(sun, t, 0).r; }
 

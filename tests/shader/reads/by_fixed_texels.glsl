@@ -10,6 +10,10 @@ float kernel(ivec2 t) { return (at(t.x > 0, sun)) + max(at(true, sun), 1.0); }
 //// of two: moon sun
 float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r * texelFetch(moon, ivec2(0), 0).r; }
 
+//// beside a variable of its name: sun
+float near(float sun) { return sun; }
+float kernel(ivec2 t) { return near(texelFetch(sun, ivec2(3), 0).r); }
+
 //// and elsewhere: 
 float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r + texelFetch(sun, t, 0).r; }
 

@@ -46,10 +46,24 @@ float kernel(ivec2 t) { return twice(moon); }
 float at(sampler2D which) { return texelFetch(which, ivec2(1, 0), 0).r; }
 float kernel(ivec2 t) { return at(sun); }
 
-//// by one of two functions of a name: 
+//// by one of two functions of a name: sun 1 0
 float at(sampler2D sun) { return texelFetch(sun, ivec2(1, 0), 0).r; }
 float at(sampler2D moon, int n) { return 1.0; }
 float kernel(ivec2 t) { return at(sun) + at(moon, 2); }
+
+//// by one of two functions of a name that may be meant: 
+float at(sampler2D sun, float n) { return texelFetch(sun, ivec2(1, 0), 0).r; }
+float at(sampler2D sun, int n) { return 1.0; }
+float kernel(ivec2 t) { return at(sun, 1.0) + at(moon, 2); }
+
+//// by a function that has a variable of its name: sun 1 0
+float other(float sun) { return sun; }
+float kernel(ivec2 t) { return other(1.0) + texelFetch(sun, ivec2(1, 0), 0).r; }
+
+//// by a function that is handed it as one of several: 
+uniform sampler2D several[2];
+float at(sampler2D sun) { return texelFetch(sun, ivec2(1, 0), 0).r; }
+float kernel(ivec2 t) { return at(sun) + at(several[1]); }
 
 //// by a macro: 
 #define AT(sun) \
