@@ -12,11 +12,11 @@ part. ``shader.window_text`` changes a kernel's text for that.
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, Window, sources_of, walk
 from playground.errors import SketchError
+from playground.shader.expressions import names_in
 from playground.shader.window_text import for_window
 from playground.sketch.flat import Ref
 from playground.sketch.model import ComputeVariant, CpuSource, PlainCompute, TexelKernel
@@ -72,5 +72,6 @@ def _refused(node: PlanNode, why: str, switch: str = "") -> SketchError:
 
 def _switch(step: Step) -> str:
     """Return the parameter that alone says whether a kernel runs; "" where there is none."""
-    names = [p.name for p in step.kernel.parameters if re.search(rf"\b{p.name}\b", step.kernel.repeat)]
+    counted = names_in(step.kernel.repeat)
+    names = [p.name for p in step.kernel.parameters if p.name in counted]
     return names[0] if len(names) == 1 and " else 0" in step.kernel.repeat else ""

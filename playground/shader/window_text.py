@@ -7,16 +7,30 @@ window's texel, and ``gl_FragCoord`` counts from the whole's corner.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import replace
 
 from playground.memo import GRAPHS
 from playground.shader.kernel import Draw, ForeignShader, Kernel, TexelKernel
 from playground.shader.reserved_names import MATCHES, WINDOW, WIRED, ZOOM
 from playground.shader.source import SourceText
+from playground.shader.syntax.nodes import (
+    Assign,
+    Call,
+    Function,
+    Index,
+    Literal,
+    Member,
+    Name,
+    Node,
+    Parenthesized,
+    Unary,
+    walk,
+)
+from playground.shader.syntax.preprocessor import preprocess
+from playground.shader.syntax.symbols import Symbol, Symbols, symbols_of
+from playground.shader.syntax.tokens import tokenize, with_edits
 
-_KERNEL = re.compile(r"\bkernel\s*\(\s*(?:in\s+)?(ivec2\s+)(\w+)\b[^)]*\)\s*\{")
-_BLOCK = re.compile(r"^(?:\w+\s+\w+\s*\([^()]*\)|struct\s+\w+)\s*\{", re.MULTILINE)
 _LOCAL = "k_local"
 _COORDINATES = re.compile(r"\bgl_FragCoord\b")
 
@@ -25,73 +39,129 @@ _COORDINATES = re.compile(r"\bgl_FragCoord\b")
 def for_window(kernel: Kernel, inputs: tuple[str, ...]) -> Kernel | str:
     """Return a kernel that knows its window, or why there can be none."""
     code = kernel.source.code
+    names = _names(code)
     if isinstance(kernel, TexelKernel):
-        if not kernel.runs_once or _names(code, "previous", *_previous(kernel)):
+        if not kernel.runs_once or names & {
+            "previous",
+            *(f"previous_{item.name}" for item in kernel.outputs),
+        }:
             return "it depends on the iteration"
-        code_and_inputs = _kernel_code(kernel, code, inputs)
+        changed, why = _Window(kernel, symbols_of(code), inputs).code()
+        if why:
+            return why
     else:
-        others = [name for name in inputs if name != "initial" and _names(code, name)]
+        others = [name for name in inputs if name != "initial" and name in names]
         if others:
             return f"it reads '{others[0]}' while it draws"
-        code_and_inputs = _with_coordinates(kernel, code), ""
-    changed, why = code_and_inputs
-    return why if changed is None else replace(kernel, source=_source(kernel.source, changed))
+        changed = _with_coordinates(kernel, code)
+    return replace(kernel, source=_source(kernel.source, changed))
 
 
-def _previous(kernel: Kernel) -> list[str]:
-    return [f"previous_{output.name}" for output in kernel.outputs]
+def _names(code: str) -> set[str]:
+    """Return what a text names in any branch or macro, but for samplers' declarations and members."""
+    preprocessed = preprocess(code, all_branches=True)
+    tokens = [*preprocessed.tokens, *(token for macro in preprocessed.macros for token in macro.body)]
+    before = ["", *(token.text for token in tokens)]
+    return {one.text for one, last in zip(tokens, before, strict=False) if last not in (".", "sampler2D")}
 
 
-def _names(code: str, *names: str) -> bool:
-    """Return whether a text names something besides a sampler's declaration and fields of that name."""
-    return any(re.search(rf"(?<!sampler2D )(?<!\.)\b{name}\b", code) for name in names)
+class _Window:
+    """Changes the text of a kernel that runs for each texel."""
+
+    def __init__(self, kernel: TexelKernel, symbols: Symbols, inputs: tuple[str, ...]) -> None:
+        self.inputs = inputs
+        self.matches = {f"{MATCHES}{one.name}": one.name for one in kernel.inputs if one.name not in inputs}
+        self.symbols = symbols
+        self.tree = symbols.tree
+        self.edits: dict[tuple[int, int], str] = {}
+
+    def code(self) -> tuple[str, str]:
+        """Return the text for a window, and why there is none."""
+        kernel = next((one for one in self.tree.declarations if _is_kernel(one)), None)
+        if not isinstance(kernel, Function) or kernel.body is None:  # the driver's wrapper says what is wrong
+            return self.tree.text, ""
+        texel = self.symbols.symbol_at[kernel.parameters[0].at]
+        if any(self._means(target, texel) for node in walk(kernel.body) for target in self._written(node)):
+            return "", f"it changes its '{texel.name}'"
+        edited = self._edit_reads(kernel, texel)
+        named = {
+            self.tree.tokens[one.token].text
+            for one in self.symbols.references
+            if one.token not in edited
+            and (one.symbol is None or (one.symbol.kind == "uniform" and one.symbol.token != one.token))
+        }
+        if left := [name for name in self.inputs if name in named]:
+            return "", f"it reads '{left[0]}' elsewhere than at its own texel"
+        if named & self.matches.keys():
+            return "", "a function of its own asks whether an input matches"
+        self._edit(texel.token, texel.token + 1, _LOCAL)
+        self._edit(kernel.body.first, kernel.body.first + 1, f"{{ ivec2 {texel.name} = {_LOCAL} + {WINDOW};")
+        return with_edits(self.tree.text, self.edits), ""
+
+    def _edit_reads(self, kernel: Function, texel: Symbol) -> set[int]:
+        """Edit what a kernel reads at its own texel; return the tokens of the names that it reads so."""
+        edited = set[int]()
+        for site in self.symbols.calls:
+            call, arguments = site.node, site.node.arguments
+            sampler, level = (arguments[0], arguments[-1]) if len(arguments) > 1 else (None, None)
+            if site.around is not kernel or not isinstance(sampler, Name) or sampler.name not in self.inputs:
+                continue
+            if not isinstance(level, Literal) or level.text != "0":
+                continue
+            is_own = isinstance(arguments[1], Name) and self._means(arguments[1], texel)
+            if (
+                call.name == "texelFetch"
+                and is_own
+                and self._edit(arguments[1].first, arguments[1].last, _LOCAL)
+            ):
+                edited.add(sampler.first)
+            elif call.name == "textureSize" and self._edit(call.first, call.last, "size"):
+                edited.add(sampler.first)
+        for one in self.symbols.references:
+            name = self.matches.get(self.tree.tokens[one.token].text)
+            whole = f"({WIRED}{name} && textureSize({name}, 0) == size)"
+            if name and one.function is kernel and self._edit(one.token, one.token + 1, whole):
+                edited.add(one.token)
+        return edited
+
+    def _edit(self, first: int, last: int, text: str) -> bool:
+        """Replace tokens; return whether they can be, which no macro writes."""
+        tokens = self.tree.tokens[first:last]
+        if any(token.macros for token in tokens):
+            return False
+        self.edits[tokens[0].start, tokens[-1].end] = text
+        return True
+
+    def _means(self, node: Node, symbol: Symbol) -> bool:
+        """Return whether a node is a variable, or a component of it."""
+        while isinstance(node, Member | Index | Parenthesized):
+            node = node.inside if isinstance(node, Parenthesized) else node.base
+        return isinstance(node, Name) and self.symbols.symbol_at.get(node.first) is symbol
+
+    def _written(self, node: Node) -> Sequence[Node]:
+        """Return what a node writes: the target, or the arguments that a function may set."""
+        if isinstance(node, Assign):
+            return [node.target]
+        if isinstance(node, Unary) and node.operator in ("++", "--"):
+            return [node.operand]
+        functions = self.symbols.callees.get(node, ()) if isinstance(node, Call) else ()
+        return [
+            argument
+            for callee in functions
+            if isinstance(callee.node, Function) and isinstance(node, Call)
+            for argument, parameter in zip(node.arguments, callee.node.parameters, strict=False)
+            if {"out", "inout"}.intersection(parameter.type.qualifiers)
+        ]
 
 
-def _kernel_code(kernel: Kernel, code: str, inputs: Iterable[str]) -> tuple[str | None, str]:
-    """Return a kernel's text for a window; or None, and why there is none."""
-    match = _KERNEL.search(code)
-    if match is None:  # the driver's wrapper says what is wrong with its signature
-        return code, ""
-    texel = match.group(2)
-    start, end = match.end(), _end_of_body(code, match.end())
-    body = code[start:end]
-    if re.search(rf"\b{texel}\s*(?:\.\w+\s*)?(?:[-+*/%]?=(?!=)|\+\+|--)|(?:\+\+|--)\s*{texel}\b", body):
-        return None, f"it changes its '{texel}'"
-    others = code[:start] + code[end:]
-    for name in inputs:
-        own = rf"\btexelFetch\s*\(\s*{name}\s*,\s*{texel}\s*,\s*0\s*\)"
-        body = re.sub(own, f"texelFetch(k_own_{name}, {_LOCAL}, 0)", body)
-        body = re.sub(rf"\btextureSize\s*\(\s*{name}\s*,\s*0\s*\)", "size", body)
-        if _names(body, name) or _names(_without_own(others, name), name):
-            return None, f"it reads '{name}' elsewhere than at its own texel"
-        body = body.replace(f"k_own_{name}", name)
-    for wired in (i.name for i in kernel.inputs if i.name not in inputs):
-        whole = f"({WIRED}{wired} && textureSize({wired}, 0) == size)"
-        body, others = (re.sub(rf"\b{MATCHES}{wired}\b", whole, text) for text in (body, others))
-    head = code[: match.start(1)] + f"ivec2 {_LOCAL}" + code[match.end(2) : start]
-    if others != code[:start] + code[end:]:
-        return None, "a function of its own asks whether an input matches"
-    return f"{head} ivec2 {texel} = {_LOCAL} + {WINDOW};{body}{code[end:]}", ""
-
-
-def _without_own(code: str, name: str) -> str:
-    """Blank the functions and structs of a text that have a variable of a name: there it is no texture."""
-    own = re.compile(rf"\b(?!(?:return|else|case)\b)[A-Za-z_]\w*\s+{name}\b")
-    text = code
-    for match in _BLOCK.finditer(code):
-        end = _end_of_body(code, match.end())
-        if own.search(code, match.start(), end):
-            text = text[: match.start()] + " " * (end - match.start()) + text[end:]
-    return text
-
-
-def _end_of_body(code: str, start: int) -> int:
-    depth = 1
-    for index in range(start, len(code)):
-        depth += {"{": 1, "}": -1}.get(code[index], 0)
-        if depth == 0:
-            return index
-    return len(code)
+def _is_kernel(node: Node) -> bool:
+    return (
+        isinstance(node, Function)
+        and node.name == "kernel"
+        and node.body is not None
+        and bool(node.parameters)
+        and node.parameters[0].type.name == "ivec2"
+    )
 
 
 def _with_coordinates(kernel: Kernel, code: str) -> str:
@@ -101,16 +171,15 @@ def _with_coordinates(kernel: Kernel, code: str) -> str:
         return f"{changed}uniform vec4 {ZOOM};\n"  # a line of its own
     if changed == code or isinstance(kernel, ForeignShader):  # whose wrapper declares it
         return changed
-    # A plain shader declares for itself: before its first line that is neither blank nor of the preprocessor.
-    lines, depth = changed.split("\n"), 0
-    for index, line in enumerate(lines):
-        word = re.match(r"\s*#\s*(\w+)", line)
-        if word:
-            depth += {"if": 1, "ifdef": 1, "ifndef": 1, "endif": -1}.get(word.group(1), 0)
-        elif line.strip() and depth == 0:
-            lines[index] = f"uniform ivec2 {WINDOW}; {line}"
-            break
-    return "\n".join(lines)
+    # A plain shader declares for itself: before its first token that no condition is around.
+    depth = 0
+    for token in tokenize(changed)[0]:
+        if token.kind == "directive":
+            word = token.text.removeprefix("#").split()[0]
+            depth += word.startswith("if") - (word == "endif")
+        elif depth == 0:
+            return f"{changed[: token.start]}uniform ivec2 {WINDOW}; {changed[token.start :]}"
+    return changed
 
 
 def _source(source: SourceText, code: str) -> SourceText:

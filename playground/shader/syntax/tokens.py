@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from itertools import zip_longest
 from typing import NamedTuple
 
@@ -77,6 +77,15 @@ def is_named(line: str, names: Collection[str], *, called: bool = False) -> bool
     )
 
 
+def with_edits(text: str, edits: Mapping[tuple[int, int], str]) -> str:
+    """Return a text with what stands for some spans, none within another, in their place."""
+    parts, end = list[str](), 0
+    for (start, after), new in sorted(edits.items()):
+        parts += [text[end:start], new]
+        end = after
+    return "".join([*parts, text[end:]])
+
+
 def without_comments(text: str) -> str:
     """Return a text with blanks in place of its comments: as long, on the same lines."""
     if "/" not in text:
@@ -87,8 +96,5 @@ def without_comments(text: str) -> str:
         if token.kind == "directive" and "/*" in token.text:
             offset = token.start + 1
             spans += [(one.start + offset, one.end + offset) for one in tokenize(token.text[1:])[1]]
-    parts, end = list[str](), 0
-    for start, after in sorted(spans):
-        parts += [text[end:start], "\n".join([" " * len(line) for line in text[start:after].split("\n")])]
-        end = after
-    return "".join([*parts, text[end:]])
+    blanks = {(s, e): "\n".join([" " * len(line) for line in text[s:e].split("\n")]) for s, e in spans}
+    return with_edits(text, blanks)
