@@ -13,7 +13,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 from playground.engine.plan_warnings import own_kernels
 from playground.errors import Diagnostic, PlaygroundError
@@ -22,6 +22,23 @@ from playground.paths import GLSL, shown
 from playground.shader.expressions import names_in
 from playground.shader.parameter import write
 from playground.shader.reserved_names import GLSL_WORDS
+from playground.shader.syntax.nodes import (
+    Assign,
+    Call,
+    Declaration,
+    Do,
+    For,
+    Function,
+    Index,
+    Member,
+    Method,
+    Name,
+    Node,
+    Parenthesized,
+    While,
+    children,
+)
+from playground.shader.syntax.symbols import Symbol, Symbols, readings
 from playground.sketch.assign import apply, effective_values, resolve
 from playground.sketch.model import (
     CpuSource,
@@ -35,11 +52,6 @@ from playground.sketch.model import (
     kernels_of,
 )
 from playground.sketch.warnings import unheeded
-
-if TYPE_CHECKING:
-    from playground.shader.declarations import Declarations, Variable
-    from playground.shader.syntax.tokens import Token
-
 
 PANEL = "the panel"
 """The name in messages of what sets a value that no file sets."""
@@ -200,23 +212,17 @@ def unwritten(kernel: Kernel) -> tuple[Diagnostic, ...]:
     """
     if isinstance(kernel, PlainFragment):
         return ()
-    from playground.shader.declarations import Declarations
-    from playground.shader.syntax.preprocessor import readings
-
     diagnostics: dict[Diagnostic, None] = {}
-    for tokens in readings(kernel.source.code):
-        reads = _Reads(Declarations(tokens))
-        for name, token in reads.before_writing():
-            before = kernel.source.code[: token.start]
-            line, column = kernel.source.lines[before.count("\n")], token.start - before.rfind("\n")
+    for symbols in readings(kernel.source.code):
+        if symbols.tree.errors:
+            continue  # what could not be read may write
+        for name, token in _Uses(symbols).read_before_writing():
+            line, column = symbols.tree.place(symbols.tree.tokens[token].start)
             message = f"'{name}' is read here before anything is written to it, so its value is undefined"
-            diagnostics[line.diagnostic(message, column, "warning")] = None
+            diagnostics[kernel.source.lines[line].diagnostic(message, column + 1, "warning")] = None
     return tuple(diagnostics)
 
 
-_STEPS = frozenset({"++", "--"})
-_ASSIGNS = frozenset({"+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="})
-_LOOPS = frozenset({"for", "while", "do"})
 _WRITES_OF_GLSL = {
     "modf": (1,),
     "frexp": (1,),
@@ -227,114 +233,86 @@ _WRITES_OF_GLSL = {
 }
 """Functions of GLSL that write an argument: which."""
 
+_Loops = tuple[Node, ...]
 
-class _Reads:
-    """How one reading of a text uses its local variables."""
 
-    def __init__(self, declared: Declarations) -> None:
-        self.declared = declared
-        self.texts = [token.text for token in declared.tokens]
-        self.places: dict[str, list[int]] = defaultdict(list)  # of each name; not of members
-        for index, text in enumerate(self.texts):
-            if self.texts[index - 1 : index] != ["."]:
-                self.places[text].append(index)
-        self.loops = [(at, self._end_of_loop(at)) for word in _LOOPS for at in self.places[word]]
-        self.writers: dict[str, set[int]] = {name: set(which) for name, which in _WRITES_OF_GLSL.items()}
-        for function in (*declared.functions, *declared.prototypes):
-            outs = {
-                i
-                for i, parameter in enumerate(function.parameters)
-                if parameter.qualifiers & {"out", "inout"}
-            }
-            self.writers.setdefault(function.name, set()).update(outs)
-        self.known = {*self.writers, *GLSL_WORDS, *declared.structs}
+class _Use(NamedTuple):
+    """One use of a variable, in the order of the run."""
 
-    def before_writing(self) -> Iterator[tuple[str, Token]]:
-        """Yield each local variable whose first use is a read, and the token of that."""
-        declared = {variable.at for variable in self.declared.variables}
-        for variable in self.declared.variables:
-            if (
-                variable.has_value
-                or variable.is_global
-                or variable.qualifiers & {"const", "shared"}
-                or variable.type.members
-            ):
-                continue
-            uses = [
-                at for at in self.places[variable.name] if variable.end < at < self._end_of_scope(variable)
-            ]
-            if uses and not declared.intersection(uses) and self._is_read(uses[0]):
-                around = [end for at, end in self.loops if variable.at < at < uses[0] < end]
-                if not any(self._is_written(at) for at in uses if at < max(around, default=0)):
-                    yield variable.name, self.declared.tokens[uses[0]]
+    token: int
+    role: str  # read | write | maybe: of a part of it, or by a function
+    loops: _Loops  # around it, the outermost first
 
-    def _is_read(self, at: int) -> bool:
-        """Return whether a use is certainly a read."""
-        after, is_part = self._behind(at)
-        if after == "=":
-            return not is_part and self._reads_itself(at)
-        if self.texts[at + 1 : at + 3] == [".", "length"] or self._is_bracketed(at):
-            return False
-        return after in _ASSIGNS or after in _STEPS or not self._may_be_written_by_call(at)
 
-    def _is_written(self, at: int) -> bool:
-        after, is_part = self._behind(at)
-        return (after == "=" and not self._reads_itself(at)) or is_part or self._may_be_written_by_call(at)
+class _Uses:
+    """How the functions of a text use their local variables."""
 
-    def _behind(self, at: int) -> tuple[str, bool]:
-        """Return what follows a variable and the brackets and members of it, and whether there are any."""
-        index = at + 1
-        while self.texts[index : index + 1] in (["["], ["."]):
-            index = (self.declared.closing(index) or index) + 1 if self.texts[index] == "[" else index + 2
-        return next(iter(self.texts[index : index + 1]), ""), index > at + 1
+    def __init__(self, symbols: Symbols) -> None:
+        self.symbols = symbols
+        self.unset: dict[Symbol, _Loops] = {}  # variables declared without a value, and the loops around them
+        self.uses: dict[Symbol, list[_Use]] = defaultdict(list)
+        for function in symbols.functions():
+            if isinstance(function.node, Function) and function.node.body is not None:
+                self._follow(function.node.body)
 
-    def _is_bracketed(self, at: int) -> bool:
-        """Return whether a variable has brackets of its own, behind which it may be written to."""
-        return self.texts[at + 1 : at + 2] == [")"] and self.texts[at + 2 : at + 3] in (["="], ["."])
+    def read_before_writing(self) -> Iterator[tuple[str, int]]:
+        """Yield each local variable whose first use is certainly a read, and the token of that."""
+        for symbol, loops in self.unset.items():
+            uses = self.uses.get(symbol, [])
+            if uses and uses[0].role == "read":
+                around = uses[0].loops[len(loops) :][:1]  # the outermost loop that it may be written in
+                if not any(use.role != "read" and set(around) & set(use.loops) for use in uses):
+                    yield symbol.name, uses[0].token
 
-    def _reads_itself(self, at: int) -> bool:
-        """Return whether a value that is assigned names the variable."""
-        end = self.declared.end_of_value(at + 2)
-        uses = [use for use in self.places[self.texts[at]] if at + 2 <= use < end]
-        return bool(uses) and self._behind(uses[0])[0] != "="
+    def _follow(self, body: Node) -> None:
+        left: list[tuple[Node, str, _Loops]] = [(body, "read", ())]
+        while left:
+            node, role, loops = left.pop()
+            parts: list[tuple[Node | None, str]]
+            match node:
+                case Name():
+                    symbol = self.symbols.symbol_at.get(node.first)
+                    if symbol in self.unset:
+                        self.uses[symbol].append(_Use(node.first, role, loops))
+                    continue
+                case Assign():
+                    parts = [(node.value, "read"), (node.target, "write" if node.operator == "=" else "read")]
+                case Index():
+                    parts = [(node.index, "read"), (node.base, "maybe" if role == "write" else role)]
+                case Member():
+                    parts = [(node.base, "maybe" if role == "write" else role)]
+                case Method():
+                    parts = [(node.base, "maybe"), *((one, "read") for one in node.arguments)]
+                case Parenthesized():
+                    parts = [(node.inside, role)]
+                case Call():
+                    parts = [(one, self._role(node, index)) for index, one in enumerate(node.arguments)]
+                case For():
+                    head = (node.start, node.condition, node.body, node.step)
+                    parts, loops = [(one, "read") for one in head], (*loops, node)
+                case While() | Do():
+                    parts, loops = [(one, "read") for one in children(node)], (*loops, node)
+                case _:
+                    parts = [(one, "read") for one in children(node)]
+                    if isinstance(node, Declaration):
+                        self._declare(node, loops)
+            left += [(one, its, loops) for one, its in reversed(parts) if one is not None]
 
-    def _may_be_written_by_call(self, at: int) -> bool:
-        """Return whether a variable is an argument, as a whole, that a function may write."""
-        depth, index = 0, 0
-        for before in range(at - 1, -1, -1):
-            text = self.texts[before]
-            if text in (")", "]"):
-                depth += 1
-            elif text in ("(", "[") and depth:
-                depth -= 1
-            elif text in ("(", ";", "{", "}", "["):
-                name = self.texts[before - 1] if text == "(" and before else ""
-                if not re.match(r"[A-Za-z_]", name):
-                    return False
-                return name not in self.known or index in self.writers.get(name, ())
-            elif text == "," and depth == 0:
-                index += 1
-        return False
+    def _declare(self, node: Declaration, loops: _Loops) -> None:
+        of_type = self.symbols.symbol_at.get(node.type.at)
+        is_struct = node.type.struct is not None or (of_type is not None and of_type.kind == "struct")
+        if is_struct or {"const", "shared"}.intersection(node.type.qualifiers):
+            return
+        for one in node.names:
+            if one.value is None and (symbol := self.symbols.symbol_at.get(one.at)) is not None:
+                self.unset[symbol] = loops
 
-    def _end_of_scope(self, variable: Variable) -> int:
-        """Return the index of the bracket that closes the block, or the function, that a variable is in."""
-        functions = [f for f in self.declared.functions if f.opens < variable.at < f.closes]
-        end = functions[0].closes if functions else len(self.texts)
-        depth = 0
-        for index in range(variable.close, end):
-            depth += (self.texts[index] == "{") - (self.texts[index] == "}")
-            if depth < 0:
-                return index
-        return end
-
-    def _end_of_loop(self, at: int) -> int:
-        """Return the index of the last token of a loop."""
-        index = at + 1
-        if self.texts[index : index + 1] == ["("]:
-            index = (self.declared.closing(index) or index) + 1
-        depth = 0
-        for end in range(index, len(self.texts)):
-            depth += (self.texts[end] in "({[") - (self.texts[end] in ")}]")
-            if depth <= 0 and self.texts[end] in (";", "}"):
-                return end
-        return len(self.texts)
+    def _role(self, call: Call, index: int) -> str:
+        """Return what a call does with an argument."""
+        callees = self.symbols.callees.get(call, ())
+        functions = [one.node for one in callees if isinstance(one.node, Function)]
+        given = [one.parameters[index] for one in functions if index < len(one.parameters)]
+        if any({"out", "inout"}.intersection(one.type.qualifiers) for one in given):
+            return "maybe"
+        is_known = functions or call.name in GLSL_WORDS or call.at in self.symbols.symbol_at
+        return "maybe" if not is_known or index in _WRITES_OF_GLSL.get(call.name, ()) else "read"

@@ -336,14 +336,14 @@ def whereabouts(message: str, source: SourceText, line: Line | None, kernel: Ker
 
 def _places(source: SourceText) -> dict[str, set[tuple[str, int]]]:
     """Return the names that a text declares, each with the kinds and the lines, from 0, of where."""
-    from playground.shader.declarations import Declarations
-    from playground.shader.syntax.preprocessor import readings
+    from playground.shader.declarations import kind_of
+    from playground.shader.syntax.symbols import readings
 
     places: dict[str, set[tuple[str, int]]] = defaultdict(set)
-    for tokens in readings(source.code):
-        for name, kind, at in Declarations(tokens).names():
-            if kind != "member":
-                places[name].add((kind, source.code.count("\n", 0, tokens[at].start)))
+    for symbols in readings(source.code):
+        for symbol in symbols.symbols:
+            if symbol.kind != "member":
+                places[symbol.name].add((kind_of(symbol), symbols.tree.line(symbol.token)))
     return places
 
 

@@ -114,15 +114,17 @@ class Tree:
         return self.place(tokens[token].start if token < len(tokens) else len(self.text))[0]
 
 
-def parse(text: str, defined: Mapping[str, str] | None = None, *, all_branches: bool = False) -> Tree:
+def parse(
+    text: str, defined: Mapping[str, str] | None = None, *, all_branches: bool = False, unknown: bool = False
+) -> Tree:
     """Return the tree of a text; it never raises.
 
     ``defined``: macros that are defined before it. ``all_branches``: a file whose conditions nobody
     has judged. All branches are read at once; where that is no GLSL, the judged text is, and each span that
-    it leaves out apart, in ``branches``.
+    it leaves out apart, in ``branches``. ``unknown``: whether what only the driver knows is defined.
     """
     with collector_paused():
-        tree = _parsed(text, preprocess(text, defined, all_branches=all_branches))
+        tree = _parsed(text, preprocess(text, defined, all_branches=all_branches, unknown=unknown))
         if all_branches and tree.errors:
             judged = _parsed(text, preprocess(text, defined))
             if judged.preprocessed.inactive and len(judged.errors) <= len(tree.errors):

@@ -16,7 +16,6 @@ import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from playground.memo import TEXTS
 from playground.shader.syntax.tokens import Comment, Token, tokenize
 
 _DIRECTIVE = re.compile(r"#\s*(\w*)\s*(.*)", re.DOTALL)
@@ -26,6 +25,7 @@ _NAME = re.compile(r"[A-Za-z_]\w*")
 _VERSION = re.compile(r"(\d+)(?:\s+(\w+))?")
 _OF_THE_DRIVER = re.compile(r"(?:GL_(?!ES$)|__)\w*")
 _CONDITIONS = frozenset({"if", "ifdef", "ifndef", "elif", "else", "endif"})
+_ANY_VERSION = "330"  # of a text that states none
 _MAX_EXPANDED_TOKENS = 200_000  # macros may double without end
 _MAX_CONDITION_TOKENS = 4_096  # of macros in one condition
 _MAX_NESTING = 32  # of a condition's brackets
@@ -83,21 +83,6 @@ def preprocess(
     else:
         _Preprocessor(result, tokens, defined or {}, unknown, all_branches=all_branches).run()
     return result
-
-
-@TEXTS.cached(weight=512)  # tokens are many
-def readings(text: str) -> tuple[tuple[Token, ...], ...]:
-    """Return the tokens of a text, of one reading or of two: treat them as constant.
-
-    What the driver defines (``GL_…``) is not known here: there is a reading without, and one with all of it
-    where that makes a difference. Empty where its macros expand to too much.
-    """
-    results = [preprocess(text)]
-    if results[0].depends_on_driver:
-        results.append(preprocess(text, unknown=True))
-    if any(result.is_truncated for result in results):
-        return ()
-    return tuple(dict.fromkeys(tuple(result.tokens) for result in results))
 
 
 def judge(
@@ -390,6 +375,8 @@ class _Preprocessor:
         if not word or (word in self._macros and word not in self._unsure):  # it names itself
             return None
         is_defined = self._is_defined(word)
+        if is_defined and word == "__VERSION__":
+            return _ANY_VERSION
         return None if is_defined is None else str(int(is_defined))
 
     def _is_defined(self, name: str) -> bool | None:

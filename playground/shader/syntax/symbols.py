@@ -118,10 +118,27 @@ def resolve(tree: Tree) -> Symbols:
 
 
 @TEXTS.cached(weight=256)  # nodes and tokens are many
-def symbols_of(text: str) -> Symbols:
-    """Return the symbols of a text whose conditions the text itself decides; treat them as constant."""
+def symbols_of(text: str, unknown: bool = False) -> Symbols:
+    """Return the symbols of a text whose conditions the text itself decides; treat them as constant.
+
+    ``unknown``: whether what only the driver knows is defined.
+    """
     with collector_paused():
-        return resolve(parse(text))
+        return resolve(parse(text, unknown=unknown))
+
+
+def readings(text: str) -> tuple[Symbols, ...]:
+    """Return the symbols of a text, of one reading or of two.
+
+    What the driver defines (``GL_…``) is not known here: there is a reading without, and one with all of it
+    where that makes a difference. Empty where its macros expand to too much.
+    """
+    results = [symbols_of(text)]
+    if results[0].tree.preprocessed.depends_on_driver:
+        other = symbols_of(text, unknown=True)
+        results += [other] if other.tree.tokens != results[0].tree.tokens else []
+    is_truncated = any(result.tree.preprocessed.is_truncated for result in results)
+    return () if is_truncated else tuple(results)
 
 
 class _Resolver:
