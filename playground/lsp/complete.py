@@ -12,15 +12,23 @@ from playground.engine.meshes import MESHES
 from playground.engine.sources import SOURCES
 from playground.lsp import describe
 from playground.lsp.documents import Document, Documents, Text
-from playground.lsp.shader import Shader, is_code, library_declared, locals_of, shader_of, word_at
+from playground.lsp.shader import (
+    Shader,
+    is_comment,
+    library_declared,
+    shader_of,
+    syntax_of,
+    word_at,
+)
 from playground.lsp.sketch_text import Cursor, SketchText, cursor_at, own_techniques
 from playground.paths import GLSL, SKETCHES
 from playground.shader.header import FALLBACKS, MODIFIERS
 from playground.shader.kernel import FORMATS, PRAGMAS, Option, options_of
 from playground.shader.libraries import libraries
-from playground.shader.outline import code_of
 from playground.shader.parameter import spell
 from playground.shader.reserved_names import GLSL_WORDS
+from playground.shader.syntax.nodes import Struct
+from playground.shader.syntax.types import components
 from playground.shader.widgets import WIDGETS
 from playground.sketch import toml_table
 from playground.sketch.assign import all_paths, find_targets
@@ -61,12 +69,7 @@ def complete_shader(document: Document, documents: Documents, at: int) -> list[t
         return _annotation(text[line:at], _uniform_above(text, line))
     if not before.strip() or before.lstrip().startswith("#"):
         return [] if before.lstrip().startswith("#") else _names(document, documents, at)
-    last = len(before) - 1
-    if not before[last].isspace() and not is_code(text, line + last):
-        return []
-    if "//" in before and "//" not in code_of(text)[line:at]:
-        return []
-    return _names(document, documents, at)
+    return [] if is_comment(text, at) else _names(document, documents, at)
 
 
 def item(
@@ -168,12 +171,10 @@ def _names(document: Document, documents: Documents, at: int) -> list[types.Comp
     shader = shader_of(document, documents)
     start = word_at(document.text, at)[1]
     if start and document.text[start - 1] == ".":  # a component or a member
-        return _members(shader)
+        return _members(shader, start - 1)
     items: dict[str, types.CompletionItem] = {}
-    function = shader.function_at(at)
-    for local in locals_of(document.text, function) if function is not None else ():
-        if local.seen <= start < local.end:
-            items[local.name] = item(local.name, Kind.Variable, order=1)
+    for name, local in syntax_of(document.text).visible(start).items():
+        items[name] = item(name, Kind.Variable, local.type, order=1)
     for parameter in shader.parameters:
         about = describe.parameter(parameter)
         items.setdefault(parameter.name, item(parameter.name, Kind.Variable, parameter.type, about, 2))
@@ -202,13 +203,15 @@ def _names(document: Document, documents: Documents, at: int) -> list[types.Comp
     return list(items.values())
 
 
-def _members(shader: Shader) -> list[types.CompletionItem]:
-    """Return the members of every struct that the text knows."""
+def _members(shader: Shader, dot: int) -> list[types.CompletionItem]:
+    """Return the members of the struct before a dot; of every struct, where its type is not known."""
+    structs = {s.name: s.node for s in shader.unit.syntax.symbols.symbols if isinstance(s.node, Struct)}
+    glsl_type = shader.type_before(dot)
     items: dict[str, types.CompletionItem] = {}
-    for _, _, declaration in shader.declared():
-        if declaration.kind == "struct":
-            for glsl_type, name in re.findall(r"(\w+)\s+(\w+)\s*(?:\[[^\]]*\])?;", declaration.signature):
-                items.setdefault(name, item(name, Kind.Field, f"{glsl_type} of {declaration.name}"))
+    for struct, node in structs.items() if glsl_type not in structs else [(glsl_type, structs[glsl_type])]:
+        for member in node.members if not components(glsl_type)[1] else ():
+            for name in member.names:
+                items.setdefault(name.name, item(name.name, Kind.Field, f"{member.type.name} of {struct}"))
     return list(items.values())
 
 

@@ -16,9 +16,8 @@ from playground.lsp.shader import (
     include_at,
     is_code,
     library_declared,
-    local_at,
-    locals_of,
     shader_of,
+    syntax_of,
     word_at,
 )
 from playground.lsp.sketch_text import SketchText
@@ -74,10 +73,9 @@ def hover_shader(document: Document, documents: Documents, at: int) -> str:
         before = document.text[document.text.rfind("\n", 0, start) + 1 : start]
         return describe.widget(word) if before.rstrip().endswith("//!") and word in WIDGETS else ""
     shader = shader_of(document, documents)
-    function = shader.function_at(start)
-    local = local_at(locals_of(document.text, function), word, start) if function is not None else None
+    local = syntax_of(document.text).local_at(word, start)
     if local is not None:
-        row = document.position(local.at).line
+        row = document.position(syntax_of(document.text).place(local)).line
         return describe.code(document.lines[row].strip())
     if (parameter := shader.parameter(word)) is not None:
         return describe.parameter(parameter)

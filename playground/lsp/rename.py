@@ -1,18 +1,21 @@
 """Rename a name where that is safe, in a function or in every file that can see it; else say why not.
 
-A function's own name changes in that function alone. One of the top level changes in every shader that
-includes the file, and in what those include; a parameter's in the sketches and techniques that set it, too.
-What is outside the open folders is never changed, so a name that is used there is refused. Before anything
-is given to the editor, the shaders and sketches are read with the new texts: what could be read before
-must be readable still.
+A local or a function's parameter changes in its scope alone, in branches that are off and in macros that mean
+it too. A name of the top level, a macro or a member changes in every shader that includes the file, and in
+what those include, all overloads of a function together; a uniform's also in the sketches and techniques that
+set it. What is outside the open folders is never changed, so a name that is used there is refused.
+
+Before anything is given to the editor, each shader is resolved with the new texts: every name must mean what
+it meant. The shaders and sketches are read, too: what could be read before must be readable still.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from lsprotocol import types
 
@@ -20,23 +23,23 @@ from playground.allowed_files import FAST, SHADERS, is_file, names_below, readin
 from playground.errors import PlaygroundError
 from playground.lsp.documents import Document, Documents, root_for
 from playground.lsp.shader import (
+    Meaning,
     Shader,
-    has_branches,
+    Syntax,
+    Unit,
     is_code,
-    local_at,
-    locals_of,
-    macros_of,
     shader_at,
     shader_of,
+    syntax_of,
     word_at,
     words,
 )
 from playground.lsp.sketch_text import SketchText
 from playground.paths import shown
 from playground.shader.header import is_given, parse_kernel
-from playground.shader.outline import Declared, code_of, outline
 from playground.shader.reserved_names import GLSL_WORDS, MATCHES, PREFIX, TOWARDS, WIRED
 from playground.shader.source import read_source, read_text
+from playground.shader.syntax.nodes import For, Node, While
 from playground.sketch.assign import find_targets
 from playground.sketch.load import load_with
 from playground.sketch.model import Graph, Parameter, Technique
@@ -45,10 +48,8 @@ from playground.sketch.toml_text import TomlPlaces
 
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _ENTRIES = frozenset({"main", "mainImage", "mainVR", "mainSound"})
-_PRAGMA = re.compile(
-    r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|draw|compute)\b(?:[^\n\\]|\\\n|\\[^\n])*", re.MULTILINE
-)
-_FOLLOWS = re.compile(r"//![^\n]*\bfollows\(([^)\n]*)\)")
+_OWN_PRAGMA = re.compile(r"#\s*pragma\s+(?:kernel|draw|compute)\b")
+_FOLLOWS = re.compile(r"//!.*?\bfollows\(([^)\n]*)\)")
 
 
 class Refused(Exception):
@@ -58,9 +59,7 @@ class Refused(Exception):
 def prepare(document: Document, documents: Documents, at: int) -> types.Range:
     """Return where the name at a place is; raise ``Refused`` where it cannot be renamed."""
     name, start = _word(document, at)
-    shader = shader_of(document, documents)
-    if _local(shader, name, start) is None:
-        _top_level(shader, name)
+    _meaning(shader_of(document, documents), name, start)
     return document.range(start, start + len(name))
 
 
@@ -70,19 +69,17 @@ def rename(document: Document, documents: Documents, at: int, new: str) -> dict[
     _check_new(new)
     if new == name:
         return {}
-    shader = shader_of(document, documents)
-    places = _local(shader, name, start)
-    if places is not None:
-        function = shader.function_at(start)
-        assert function is not None
-        inside = {word for word, at in words(document.text) if function.start <= at < function.end}
-        inside |= {word for used in _macros_in(shader, function) for word in used.words}
-        if new in inside:
-            raise Refused(f"'{new}' is a name of this function already")
-        return {document.path: [(index, index + len(name), new) for index in places]}
-    _top_level(shader, name)
-    edits = _Everywhere(document, documents, shader, name, new).edits()
-    return {path: sorted(edits) for path, edits in edits.items() if edits}
+    return _Rename(document, documents, name, start, new).edits()
+
+
+def references(document: Document, documents: Documents, at: int) -> dict[Path, list[tuple[int, int]]]:
+    """Return the places, by file, of what is named at a place, in every shader that can see it."""
+    try:
+        name, start = _word(document, at)
+        found = _Rename(document, documents, name, start, name)
+    except Refused:
+        return {}
+    return {path: [(place, place + len(name)) for place in sorted(places)] for path, places in found.places()}
 
 
 def _word(document: Document, at: int) -> tuple[str, int]:
@@ -91,12 +88,10 @@ def _word(document: Document, at: int) -> tuple[str, int]:
         raise Refused("there is no name here that can be renamed")
     if name in GLSL_WORDS:
         raise Refused(f"'{name}' is a word of GLSL itself")
-    if start and document.text[start - 1] == ".":
-        raise Refused(f"'{name}' is a component or a struct's member; those are not renamed")
-    if any(
-        macro.start <= start < macro.end and name in macro.parameters for macro in macros_of(document.text)
-    ):
+    if any(word.start == start and word.is_parameter for word in words(document.text)):
         raise Refused(f"'{name}' is a macro's parameter; those are not renamed")
+    if not any(word.start == start for word in words(document.text)):
+        raise Refused("there is no name here that can be renamed")
     return name, start
 
 
@@ -111,132 +106,161 @@ def _check_new(new: str) -> None:
         raise Refused(f"'{new}': names that begin with {PREFIX} or gl_, or hold __, are reserved")
 
 
-def _local(shader: Shader, name: str, start: int) -> list[int] | None:
-    """Return the places of a name that a function declares; None for one of the top level."""
-    function = shader.function_at(start)
-    if function is None or start == function.at:
-        return None
-    locals_ = locals_of(shader.text, function)
-    local = local_at(locals_, name, start)
-    if local is None:
-        return None
-    for path, text, declaration in shader.declared():
-        if declaration.name == name:
-            line = text.count("\n", 0, declaration.at) + 1
-            raise Refused(f"'{name}' is also declared at {shown(path)}:{line}, which this function hides")
-    for used in _macros_in(shader, function):
-        if name in used.words:
-            raise Refused(
-                f"'{name}' is in the macro {used.name} at {used.location}, which this function uses"
-            )
-    # Parts that exclude each other may declare it each for themselves, and close blocks that others open.
-    branches = has_branches(shader.text, function)
-    return [
-        index
-        for word, index in words(shader.text)
-        if word == name
-        and function.start <= index < function.end
-        and not _is_member(shader.text, index)
-        and not any(declaration.start <= index < declaration.end for declaration in macros_of(shader.text))
-        and (other := local_at(locals_, name, index)) is not None
-        and (branches or other.end == local.end)
-    ]
+def _meaning(shader: Shader, name: str, start: int) -> tuple[Any, ...]:
+    """Return what a name at a place means; raise ``Refused`` where it is not the text's own, or not one."""
+    meanings = shader.unit.meanings(shader.path, start, name)
+    if len(meanings) > 1:
+        raise Refused(f"'{name}' is in a macro that is used where it means several things")
+    if not meanings:
+        local = syntax_of(shader.text).visible(start).get(name)
+        raise Refused(
+            f"'{name}' is in a part of the text that cannot be read"
+            if local is not None or shader.unit.syntax.declares(name)
+            else f"no file that this one includes declares '{name}'"
+        )
+    (meaning,) = meanings
+    assert isinstance(meaning, tuple)
+    if meaning[0] == "member" and not meaning[1]:
+        raise Refused(f"'{name}' is a component, or a member of what has no known type")
+    if meaning[0] == "member" and shader.unit.syntax.is_swizzle(name, meaning[1]):
+        raise Refused(f"'{name}' is a component; those are not renamed")
+    if meaning[0] == "top":
+        if is_given(name) or name in _ENTRIES:
+            raise Refused(f"'{name}' is what the playground gives or calls; its name is fixed")
+        if any(declaration.name == name for declaration in shader.inputs):
+            raise Refused(f"'{name}' is an input: sketches that wire it name it, so it is not renamed here")
+        if not shader.unit.syntax.declares(name):
+            raise Refused(f"no file that this one includes declares '{name}'")
+    return meaning
 
 
-@dataclass(frozen=True, slots=True)
-class _Used:
-    """A macro that a function uses."""
+@dataclass
+class _User:
+    """A shader in which names change."""
 
-    name: str
-    words: frozenset[str]  # in its body, without its parameters
-    location: str  # as a user would name it
+    shader: Shader
+    edits: dict[int, tuple[str, str]] = field(default_factory=dict)  # of its unit: place → old, new
 
-
-def _macros_in(shader: Shader, function: Declared) -> list[_Used]:
-    """Return the macros that a function's text names, and those that they name."""
-    macros_by_name: dict[str, list[_Used]] = {}
-    for path, text in shader.files:
-        inside = [(word, at) for word, at in words(text) if not _is_member(text, at)]
-        for macro in macros_of(text):
-            body = frozenset(word for word, at in inside if macro.body <= at < macro.end)
-            line = text.count("\n", 0, macro.start) + 1
-            macros_by_name.setdefault(macro.name, []).append(_Used(macro.name, body, f"{shown(path)}:{line}"))
-    new = {word for word, at in words(shader.text) if function.start <= at < function.end}
-    macros: dict[str, list[_Used]] = {}
-    while new := {word for word in new if word in macros_by_name and word not in macros}:
-        macros |= {word: macros_by_name[word] for word in new}
-        new = {word for name in new for used in macros_by_name[name] for word in used.words}
-    return [used for several in macros.values() for used in several]
+    @property
+    def unit(self) -> Unit:
+        return self.shader.unit
 
 
-def _is_member(text: str, index: int) -> bool:
-    return code_of(text)[:index].rstrip().endswith(".")
+class _Rename:
+    """One name, in every file that can see it."""
 
-
-def _top_level(shader: Shader, name: str) -> None:
-    """Raise ``Refused`` for a name that no text of the shader declares, or that is not its to change."""
-    if is_given(name) or name in _ENTRIES:
-        raise Refused(f"'{name}' is what the playground gives or calls; its name is fixed")
-    if any(declaration.name == name for declaration in shader.inputs):
-        raise Refused(f"'{name}' is an input: sketches that wire it name it, so it is not renamed here")
-    if not any(declaration.name == name for _, _, declaration in shader.declared()):
-        raise Refused(f"no file that this one includes declares '{name}'")
-
-
-class _Everywhere:
-    """A name of the top level, in every file that can see it."""
-
-    def __init__(self, document: Document, documents: Documents, shader: Shader, name: str, new: str) -> None:
+    def __init__(self, document: Document, documents: Documents, name: str, start: int, new: str) -> None:
         self.documents = documents
         self.name, self.new = name, new
-        self.parameter = shader.parameter(name)
         around = [folder for folder in documents.folders if document.path.is_relative_to(folder)]
         self.folder = around[0] if around else document.root
-        self.shader = shader
-        self.shaders: dict[Path, Shader] = {}
+        self.shader = shader_of(document, documents)
+        self.meaning = _meaning(self.shader, name, start)
+        self.kind = self.meaning[0]
+        self.parameter = self.shader.parameter(name) if self.kind == "top" else None
+        self.declared: set[tuple[Path, int]] = set()  # of a local
+        self._shaders: dict[Path, Shader] = {}
+        self.users = self._users()
+
+    def places(self) -> Iterator[tuple[Path, set[int]]]:
+        """Yield each file with the places of the name in it."""
+        yield from ((path, set(edits)) for path, edits in self._by_file().items())
 
     def edits(self) -> dict[Path, list[Edit]]:
-        users = self._users()
-        texts: dict[Path, str] = {}
-        for user in users:
-            texts |= dict(user.files)
-        edits_by_file = {path: self._in_shader(path, text) for path, text in texts.items()}
-        edits_by_file = {path: edits for path, edits in edits_by_file.items() if edits}
-        for path, edits in edits_by_file.items():
+        changes = self._by_file()
+        for path, places in changes.items():
             if not self._is_ours(path):
-                what = "is declared" if self._declares(texts[path]) else "is used"
-                raise Refused(f"'{self.name}' {what} in {shown(path)}, which is not in the open folder")
-            self._check(path, texts[path], bool(edits))
-        for user in users:
-            for path, text in user.files:
-                if any(word == self.new for word, _ in words(text)):
-                    raise Refused(f"'{self.new}' is a name in {shown(path)} already")
+                raise Refused(self._outside(path, min(places)))
+        for user in self.users:
+            self._check_conflicts(user, changes)
+            self._check_meanings(user)
+        edits_by_file = {
+            path: [(at, at + len(old), new) for at, (old, new) in places.items()]
+            for path, places in changes.items()
+        }
         if self.parameter is not None:
+            self._check_variants(edits_by_file)
+            for path, edits in self._in_pragmas().items():
+                edits_by_file.setdefault(path, []).extend(edits)
             for path, edits in self._in_sketches(edits_by_file).items():
                 edits_by_file[path] = edits
-        self._verify(edits_by_file, users)
-        return edits_by_file
+        if self.kind != "local":
+            self._verify(edits_by_file)
+        return {path: sorted(set(edits)) for path, edits in edits_by_file.items()}
 
-    def _users(self) -> list[Shader]:
-        """Return every shader that reads a file in which the name would change."""
-        everything = [self.shader, *(self._shader(path) for path in self._files(SHADERS))]
-        changed = {path for path, text in self.shader.files if self._names(text)}
+    # ── where the name is ────────────────────────────────────────────────────
+
+    def _users(self) -> list[_User]:
+        """Return every shader that reads a file in which the name changes."""
+        users = [self._user(self.shader)]
+        if self.kind == "local" and not self._is_in_macro(users[0]):
+            return users
+        changed = set(self._by_file(users))
+        rest = [self._shader(path) for path in self._files(SHADERS)]
         while True:
-            users = [s for s in everything if any(path in changed for path, _ in s.files)]
-            wider = {path for s in users for path, text in s.files if self._names(text)}
-            if wider <= changed:
+            near = [s for s in rest if any(path in changed for path, _ in s.files)]
+            if not near:
                 return users
-            changed |= wider
+            rest = [s for s in rest if s not in near]
+            users += [user for shader in near if (user := self._user(shader)).edits]
+            changed |= set(self._by_file(users))
+
+    def _user(self, shader: Shader) -> _User:
+        user = _User(shader)
+        syntax = shader.unit.syntax
+        own = self._own_meanings(shader)
+        for old, new in self._names.items():
+            for each in syntax.occurrences(old):
+                is_meant = each.meaning in own if old == self.name else each.meaning == ("top", old)
+                if is_meant and each.at >= 0:
+                    user.edits[each.at] = (old, new)
+                elif is_meant:
+                    raise Refused(f"'{old}' is put together by a macro in {shown(shader.path)}")
+        return user
+
+    def _own_meanings(self, shader: Shader) -> set[Meaning]:
+        """Return what the name has to mean in a shader: of a local, what is declared in the same place."""
+        if self.kind != "local":
+            return {self.meaning}
+        if shader is self.shader:
+            places = [e.at for e in shader.unit.syntax.occurrences(self.name) if e.meaning == self.meaning]
+            self.declared = {shader.unit.origin(at) for at in places[:1] if at >= 0}
+            return {self.meaning}
+        found: set[Meaning] = set()
+        for path, at in self.declared:
+            found |= shader.unit.meanings(path, at, self.name)
+        return found
+
+    def _is_in_macro(self, user: _User) -> bool:
+        found = user.unit.syntax.occurrences(self.name)
+        return any(each.macro and each.at in user.edits for each in found)
+
+    @property
+    def _names(self) -> dict[str, str]:
+        """What changes: name → new name; of a parameter what the engine derives from it, too."""
+        names = {self.name: self.new}
+        if self.parameter is not None:
+            names |= {f"{prefix}{self.name}": f"{prefix}{self.new}" for prefix in (TOWARDS, WIRED, MATCHES)}
+        return names
+
+    def _by_file(self, users: Iterable[_User] | None = None) -> dict[Path, dict[int, tuple[str, str]]]:
+        """Return the places that change, by file: place → old, new."""
+        places: dict[Path, dict[int, tuple[str, str]]] = {}
+        for user in self.users if users is None else users:
+            for at, change in user.edits.items():
+                path, place = user.unit.origin(at)
+                places.setdefault(path, {})[place] = change
+        return places
 
     def _shader(self, path: Path) -> Shader:
-        if path not in self.shaders:
+        if path not in self._shaders:
             with self.documents.reading():
                 try:
                     text = read_text(path)
                 except PlaygroundError:
                     text = ""
-            self.shaders[path] = shader_at(path, text, root_for(path), self.documents)
-        return self.shaders[path]
+            self._shaders[path] = shader_at(path, text, root_for(path), self.documents)
+        return self._shaders[path]
 
     def _files(self, endings: tuple[str, ...]) -> list[Path]:
         names = names_below((self.folder,), endings)
@@ -246,66 +270,84 @@ class _Everywhere:
     def _is_ours(self, path: Path) -> bool:
         return path.is_relative_to(self.folder) or self.documents.is_open_folder(path)
 
-    def _names(self, text: str) -> bool:
-        return self.name in text and any(word in self._old for word, _ in words(text))
+    def _outside(self, path: Path, at: int) -> str:
+        syntax = syntax_of(self.documents.text_of(path).text)
+        what = "is declared" if syntax.declares(self.name) else "is used"
+        return f"'{self.name}' {what} in {shown(path)}, which is not in the open folder"
 
-    @property
-    def _old(self) -> dict[str, str]:
-        """What changes: name → new name; of a parameter that is a direction, the vector towards it too."""
-        names = {self.name: self.new}
-        if self.parameter is not None:
-            names |= {f"{prefix}{self.name}": f"{prefix}{self.new}" for prefix in (TOWARDS, WIRED, MATCHES)}
-        return names
+    # ── whether every name keeps its meaning ─────────────────────────────────
 
-    def _declares(self, text: str) -> bool:
-        return any(declaration.name == self.name for declaration in outline(text))
-
-    def _in_shader(self, path: Path, text: str) -> list[Edit]:
-        members = [declaration for declaration in outline(text) if declaration.kind == "struct"]
-        code = code_of(text)
-        edits = []
-        for word, index in words(text):
-            new = self._old.get(word)
-            if new is None or _is_member(text, index):
+    def _check_conflicts(self, user: _User, changes: Mapping[Path, Mapping[int, object]]) -> None:
+        """Raise ``Refused`` where a place that changes means something else in a shader, too."""
+        own = self._own_meanings(user.shader)
+        for each in user.unit.syntax.occurrences(self.name):
+            if each.at < 0 or each.meaning in own:
                 continue
-            after = code[index + len(word) :].lstrip()[:1]
-            if after in tuple(";,[") and any(
-                declaration.body < index < declaration.end for declaration in members
-            ):
-                continue  # a struct's member of that name
-            edits.append((index, index + len(word), new))
-        if self.parameter is not None:
-            edits += self._in_texts(text)
-        return edits
+            path, place = user.unit.origin(each.at)
+            if place in changes.get(path, ()):
+                where = self._location(path, place)
+                raise Refused(
+                    f"'{self.name}' is in the macro {each.macro} at {where}, which is used where it means"
+                    " something else"
+                    if each.macro
+                    else f"'{self.name}' at {where} means something else in {shown(user.shader.path)}"
+                )
+        if self.kind == "member" and any(
+            each.meaning == ("member", "", self.name) and not user.unit.syntax.is_swizzle(self.name, "")
+            for each in user.unit.syntax.occurrences(self.name)
+        ):
+            raise Refused(f"'.{self.name}' in {shown(user.shader.path)} is of something with no known type")
 
-    def _in_texts(self, text: str) -> list[Edit]:
-        """Return the edits in a pragma's expressions, and in annotations that follow the parameter."""
-        edits = []
-        for match in (*_PRAGMA.finditer(text), *_FOLLOWS.finditer(text)):
-            for word in re.finditer(rf"(?<![\w.]){self.name}\b(?!\s*[:=])", match[0]):
-                if match[0].count('"', 0, word.start()) % 2:
-                    start = match.start() + word.start()
-                    edits.append((start, start + len(self.name), self.new))
-        return edits
+    def _check_meanings(self, user: _User) -> None:
+        """Raise ``Refused`` where, in a shader with the new name, any name would mean something else."""
+        syntax = user.unit.syntax
+        text = _edited(user.unit.text, ((at, at + len(old), new) for at, (old, new) in user.edits.items()))
+        place = _first_difference(syntax, syntax_of(text))
+        taken: set[Meaning] = {("macro", self.new)}
+        taken |= {("member", self.meaning[1], self.new)} if self.kind == "member" else set()
+        taken |= {("top", self.new)} if self.kind in ("top", "macro") else set()
+        for meaning in self._own_meanings(user.shader) if self.kind == "local" else ():
+            taken |= {("local", self.new, scope) for scope in _same_scope(meaning, syntax)}
+        is_unsure = not syntax.is_whole and self.kind != "member"
+        for each in syntax.occurrences(self.new):
+            if each.at >= 0 and (is_unsure or each.meaning in taken):
+                place = each.at
+                break
+        if place is not None:
+            path, at = user.unit.origin(place)
+            if self.kind == "local" and path == self.shader.path:
+                raise Refused(f"'{self.new}' is a name of this function already: {self._location(path, at)}")
+            raise Refused(f"'{self.new}' is a name in {self._location(path, at)} already")
 
-    def _check(self, path: Path, text: str, is_changed: bool) -> None:
-        for declaration in outline(text):
-            inside = (
-                locals_of(text, declaration)
-                if declaration.kind == "function" and declaration.body >= 0
-                else ()
-            )
-            at = next((local.at for local in inside if local.name == self.name), None)
-            if at is not None:
-                line = text.count("\n", 0, at) + 1
-                raise Refused(f"'{self.name}' is hidden by another of that name at {shown(path)}:{line}")
-        if is_changed and self.parameter is not None:
+    def _location(self, path: Path, at: int) -> str:
+        text = self.documents.text_of(path).text
+        return f"{shown(path)}:{text.count(chr(10), 0, at) + 1}"
+
+    def _check_variants(self, changed: Iterable[Path]) -> None:
+        for path in changed:
             for ending in FAST:
                 variant = path.with_name(f"{path.stem}{ending}")
                 if path.suffix == ".glsl" and is_file(variant):
                     raise Refused(
                         f"{shown(variant)} has the parameters of {path.name}, '{self.name}' among them"
                     )
+
+    # ── pragmas, annotations and sketches ────────────────────────────────────
+
+    def _in_pragmas(self) -> dict[Path, list[Edit]]:
+        """Return the edits in pragmas' expressions, and in annotations that follow the parameter."""
+        edits: dict[Path, list[Edit]] = {}
+        for path, text in {path: text for user in self.users for path, text in user.shader.files}.items():
+            preprocessed = syntax_of(text).tree.preprocessed
+            parts = [(d.start, d.text) for d in preprocessed.directives if _OWN_PRAGMA.match(d.text)]
+            for comment in preprocessed.comments:
+                parts += [(comment.start, m[0]) for m in [_FOLLOWS.match(comment.text)] if m]
+            for start, part in parts:
+                for word in re.finditer(rf"(?<![\w.]){self.name}\b(?!\s*[:=])", part):
+                    if part.count('"', 0, word.start()) % 2:
+                        at = start + word.start()
+                        edits.setdefault(path, []).append((at, at + len(self.name), self.new))
+        return edits
 
     def _in_sketches(self, changed: Iterable[Path]) -> dict[Path, list[Edit]]:
         assert self.parameter is not None
@@ -326,7 +368,7 @@ class _Everywhere:
     def _unopened(self, path: Path) -> Document:
         return Document(read_text(path), self.documents.units, "", path, None)
 
-    def _verify(self, edits_by_file: Mapping[Path, list[Edit]], users: list[Shader]) -> None:
+    def _verify(self, edits_by_file: Mapping[Path, list[Edit]]) -> None:
         """Raise ``Refused`` where something that can be read now could not be read with the edits."""
         open_texts = {document.path: document.text for document in self.documents}
         with self.documents.reading():
@@ -336,9 +378,33 @@ class _Everywhere:
         for path in tomls:
             if path not in before and (why := _load(path, {**open_texts, **new})) is not None:
                 raise Refused(f"{shown(path)} could not be read any more: {why}")
-        for user in users:
-            if _parse(user, open_texts) is None and (why := _parse(user, {**open_texts, **new})) is not None:
-                raise Refused(f"{shown(user.path)} could not be read any more: {why}")
+        for shader in [user.shader for user in self.users if _parse(user.shader, open_texts) is None]:
+            if (why := _parse(shader, {**open_texts, **new})) is not None:
+                raise Refused(f"{shown(shader.path)} could not be read any more: {why}")
+
+
+def _same_scope(meaning: Meaning, syntax: Syntax) -> Iterator[Node]:
+    """Yield the scopes in which a local of this meaning cannot be declared twice: a loop's is its body's."""
+    assert isinstance(meaning, tuple)
+    scope = meaning[2]
+    yield scope
+    if isinstance(scope, For | While):
+        yield scope.body
+    yield from (node for node in syntax.scopes() if isinstance(node, For | While) and node.body is scope)
+
+
+def _first_difference(one: Syntax, other: Syntax) -> int | None:
+    """Return a place of the first text whose name means something else in the other; None where none does."""
+    for before, after in zip(one.readings, other.readings, strict=False):
+        for first, second in zip(before.symbols.references, after.symbols.references, strict=False):
+            links = [
+                (each.token, each.symbol and each.symbol.token, sorted(s.token for s in each.overloads))
+                for each in (first, second)
+            ]
+            if links[0] != links[1]:
+                return before.tree.tokens[first.token].start
+    counts = [[len(reading.tree.tokens) for reading in syntax.readings] for syntax in (one, other)]
+    return None if counts[0] == counts[1] else 0
 
 
 def _load(path: Path, texts: Mapping[Path, str]) -> str | None:

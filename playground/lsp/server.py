@@ -27,8 +27,7 @@ from playground.lsp import explain
 from playground.lsp.complete import complete_shader, complete_sketch
 from playground.lsp.documents import Checker, Document, Documents, Text
 from playground.lsp.rename import Refused, prepare, rename
-from playground.lsp.shader import library_declared
-from playground.shader.outline import WORD
+from playground.lsp.shader import library_declared, word_at
 
 T = TypeVar("T")
 
@@ -96,8 +95,8 @@ class Server(LanguageServer):
         start, end = len(line) - len(line.lstrip()), len(line.rstrip())
         if diagnostic.line and diagnostic.column:
             start = min(diagnostic.column - 1, len(line))
-            word = WORD.match(line, start)
-            end = word.end() if word else min(start + 1, len(line))
+            word, at = word_at(line, start)
+            end = at + len(word) if word and at == start else min(start + 1, len(line))
         base = text.line_start(row)
         return types.Diagnostic(
             text.range(base + start, base + max(start, end)),

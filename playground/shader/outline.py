@@ -1,7 +1,7 @@
 """Outline a GLSL file: its top-level declarations with their comments.
 
-Read from the text alone, one file at a time, so that a text that does not compile has an outline too:
-what is after a bracket that was never closed belongs to its block.
+Read from the text alone, one file at a time and with every branch of its conditions, so that a text that does
+not compile has an outline too. A name that a macro replaces is listed as it is written.
 """
 
 from __future__ import annotations
@@ -11,18 +11,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from playground.memo import TEXTS
+from playground.shader.syntax.nodes import Declaration, Function, InterfaceBlock, Node
+from playground.shader.syntax.parser import Tree, parse
 
-WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-# Of a pragma, // in quotes is no comment; one of // goes on behind a backslash at the line's end.
-_MARK = re.compile(r'"(?:[^"\\\n]|\\.)*"?|//(?:[^\n\\]|\\.)*|/\*.*?(?:\*/|\Z)', re.DOTALL)
-_QUALIFIERS = r"(?:(?:const|flat|highp|mediump|lowp|in|out|uniform|shared)\s+)*"
-_FUNCTION = re.compile(rf"{_QUALIFIERS}([A-Za-z_]\w*)\s+([A-Za-z_]\w*)\s*\(([^)]*)\)\s*$", re.DOTALL)
-_VARIABLE = re.compile(
-    rf"({_QUALIFIERS})([A-Za-z_]\w*)\s+([A-Za-z_]\w*)\s*(\[[^\]]*\]\s*)?(?:=.*)?$", re.DOTALL
-)
-_STRUCT = re.compile(r"struct\s+([A-Za-z_]\w*)\s*$")
-_DEFINE = re.compile(r"[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(\([^)\n]*\))?[^\n]*")
-DIRECTIVE = re.compile(r"[ \t]*#(?:[^\n\\]|\\\n|\\[^\n])*")  # and the lines that it goes on to
+_MARKER = re.compile(r"//\s*(?:anchor|end|trace):")  # comments that tools read
+_WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,94 +40,75 @@ class Declared:
 @TEXTS.cached()
 def outline(text: str) -> tuple[Declared, ...]:
     """Return what a text declares at its top level, in its order; lines end in LF."""
-    return tuple(sorted((*_macros(text), *_statements(text)), key=lambda declaration: declaration.start))
+    return outline_of(parse(text, all_branches=True))
 
 
-@TEXTS.cached()
-def code_of(text: str) -> str:
-    """Return a text as long as this one, with spaces in place of its comments."""
-    return _MARK.sub(lambda match: match[0] if match[0][0] == '"' else blank(match), text)
+def outline_of(tree: Tree) -> tuple[Declared, ...]:
+    """Return what a tree with every branch declares at its top level, in the order of its text."""
+    declared = [each for reading in (tree, *tree.branches) for each in _Outline(reading).declared()]
+    return tuple(sorted(dict.fromkeys(declared), key=lambda each: (each.start, each.at)))
 
 
-def blank(match: re.Match[str]) -> str:
-    """Return spaces for a match, its line ends kept."""
-    return re.sub(r"[^\n]", " ", match[0])
+class _Outline:
+    def __init__(self, tree: Tree) -> None:
+        self.tree = tree
+        self.text = tree.text
 
+    def declared(self) -> Iterator[Declared]:
+        for node in self.tree.declarations:
+            if isinstance(node, Function):
+                body = self.tree.span(node.body)[0] if node.body is not None else -1
+                yield self._declared("function", node.at, node, body)
+            elif isinstance(node, Declaration):
+                kind = "uniform" if "uniform" in node.type.qualifiers else "variable"
+                if (struct := node.type.struct) is not None and struct.name:
+                    yield self._declared("struct", struct.at, struct, self.tree.tokens[struct.at + 1].start)
+                for declarator in node.names if node.type.name or struct is not None else ():
+                    yield self._declared(kind, declarator.at, node)
+            elif isinstance(node, InterfaceBlock):
+                kind = "uniform" if "uniform" in node.qualifiers else "variable"
+                if node.instance:
+                    yield self._declared(kind, node.instance_at, node)
+                for member in node.members if not node.instance else ():
+                    for declarator in member.names:
+                        yield self._declared(kind, declarator.at, member)
+        yield from self._macros()
 
-@TEXTS.cached()
-def without_directives(text: str) -> str:
-    """Return a text with spaces in place of comments and directives."""
-    return DIRECTIVE.sub(blank, code_of(text))
+    def _declared(self, kind: str, token: int, node: Node, body: int = -1) -> Declared:
+        start, end = self.tree.span(node)
+        name, at = self._name(token)
+        head_end = body if kind == "function" and body >= 0 else end
+        signature = self._one_line(start, head_end).removesuffix(";").rstrip()
+        return Declared(name, kind, signature, _comment_above(self.text, start), at, start, end, body)
 
+    def _name(self, index: int) -> tuple[str, int]:
+        """Return a name as the text spells it, and where; a macro's call is what it stands for."""
+        token = self.tree.tokens[index]
+        if not token.macros or _WORD.fullmatch(self.text, token.start, token.end):
+            return self.text[token.start : token.end], token.start
+        return token.text, token.spelled if token.spelled >= 0 else token.start
 
-def _macros(text: str) -> Iterator[Declared]:
-    code = code_of(text)
-    for match in _DEFINE.finditer(code):
-        line = code.rfind("\n", 0, match.start()) + 1
-        if not code[line : match.start()].strip() and not _is_guard(code, match):
-            signature = f"#define {' '.join(code[match.start(1) : match.end()].split())}"
-            comment = _comment_above(text, line)
-            yield Declared(match[1], "macro", signature, comment, match.start(1), line, match.end())
+    def _macros(self) -> Iterator[Declared]:
+        for macro in self.tree.preprocessed.macros:
+            if macro.at < 0 or (not macro.body and self._is_guard(macro.name, macro.start)):
+                continue
+            signature = f"#define {self._one_line(macro.at, macro.end)}"
+            comment = _comment_above(self.text, macro.start)
+            yield Declared(macro.name, "macro", signature, comment, macro.at, macro.start, macro.end)
 
+    def _is_guard(self, name: str, start: int) -> bool:
+        """Return whether a macro is defined to mark the file as included."""
+        above = self.text[:start].rstrip().rpartition("\n")[2].replace(" ", "")
+        return above in (f"#ifndef{name}", f"#if!defined({name})", f"#if!defined{name}")
 
-def _is_guard(code: str, match: re.Match[str]) -> bool:
-    """Return whether a macro is defined to mark the file as included."""
-    guard = re.compile(rf"#\s*ifndef\s+{match[1]}\s*\n\s*\Z")
-    return bool(guard.search(code[: match.start() + len(match[0]) - len(match[0].lstrip())]))
-
-
-def _statements(text: str) -> Iterator[Declared]:
-    code = without_directives(text)
-    depth, start, body, head = 0, 0, -1, ""
-    for match in re.finditer(r"[{};]", code):
-        mark, at = match.group(), match.start()
-        if mark == "{":
-            if depth == 0:
-                head, body = code[start:at], at
-            depth += 1
-        elif mark == "}" and depth:
-            depth -= 1
-            if depth == 0:
-                block = _block(text, head, start, body, at + 1)
-                if block is not None:
-                    yield block
-                    # What follows a struct's bracket is a variable or the semicolon alone.
-                start = at + 1
-        elif mark == ";" and depth == 0:
-            block = _statement(text, code[start:at], start, at + 1)
-            if block is not None:
-                yield block
-            start = at + 1
-    if depth and (block := _block(text, head, start, body, len(code))) is not None:
-        yield block
-
-
-def _block(text: str, head: str, start: int, body: int, end: int) -> Declared | None:
-    lead = len(head) - len(head.lstrip())
-    start += lead
-    head = head[lead:].rstrip()
-    if match := _FUNCTION.match(head):
-        signature, at = " ".join(head.split()), start + match.start(2)
-        return Declared(match[2], "function", signature, _comment_above(text, start), at, start, end, body)
-    if match := _STRUCT.match(head):
-        signature = " ".join(code_of(text)[start:end].split())
-        at = start + match.start(1)
-        return Declared(match[1], "struct", signature, _comment_above(text, start), at, start, end, body)
-    return None
-
-
-def _statement(text: str, code: str, start: int, end: int) -> Declared | None:
-    lead = len(code) - len(code.lstrip())
-    start += lead
-    code = code[lead:].rstrip()
-    if match := _FUNCTION.match(code):
-        signature, at = " ".join(code.split()), start + match.start(2)
-        return Declared(match[2], "function", signature, _comment_above(text, start), at, start, end)
-    if match := _VARIABLE.match(code):
-        kind = "uniform" if "uniform" in match[1].split() else "variable"
-        signature, at = " ".join(code.split()), start + match.start(3)
-        return Declared(match[3], kind, signature, _comment_above(text, start), at, start, end)
-    return None
+    def _one_line(self, start: int, end: int) -> str:
+        """Return a part of the text without its comments, on one line."""
+        written, at = "", start
+        for comment in self.tree.preprocessed.comments:
+            if at <= comment.start < end:
+                written += f"{self.text[at : comment.start]} "
+                at = comment.end
+        return " ".join(f"{written}{self.text[at:end]}".replace("\\\n", " ").split())
 
 
 def _comment_above(text: str, start: int) -> str:
@@ -146,7 +120,7 @@ def _comment_above(text: str, start: int) -> str:
         line = text[begins:end].strip()
         if not line.startswith("//") or line.startswith("//!"):
             break
-        if not re.match(r"//\s*(?:anchor|end):", line):
+        if not _MARKER.match(line):
             lines.append(line[2:].removeprefix(" "))
         end = begins - 1
     return "\n".join(reversed(lines)).strip()

@@ -367,6 +367,42 @@ float kernel(ivec2 texel) { float «e» = 1.0; return SQUARE(«e»); }""",
 #endif
     return «e»;
 }""",
+    "a macro's text": """#define STEP (1.0 + «e»)
+#define TWICE(e) (STEP * e)
+float kernel(ivec2 texel) { float «e» = 1.0; return TWICE(«e»); }
+float other(float e) { return e; }""",
+    "branches of other brackets": """float kernel(ivec2 texel) {
+    float «e» = 1.0;
+#ifdef FINE
+    for (int i = 0; i < 3; ++i) { «e» += 1e3 * march.e;
+#else
+    while (texel.x > 1) { float far = «e»; «e» *= far;
+#endif
+    }
+    return «e»;
+}
+float other(float e) { return e; }""",
+    "struct": """struct «Wave» { float e; };
+«Wave» wave(float e) { return «Wave»(e); }
+float kernel(ivec2 texel) { «Wave» both[2]; both[0] = wave(1.0); return both[0].e; }""",
+    "member": """struct Sea { float e; };
+struct Wave { float «e», f; Sea sea; };
+Wave wave(float e) { return Wave(e, 1.0, Sea(e)); }
+float kernel(ivec2 texel) {
+    Wave all[2]; float e = 1.0; all[0].«e» = e; all[1] . «e» += wave(e).«e» + all[0].sea.e; return e;
+}""",
+    "overloads": """float «e»(float f) { return f; }
+float «e»(vec2 f) { return «e»(f.x); }
+float kernel(ivec2 texel) { float f = 1e-3; return «e»(f) + «e»(vec2(f)); }""",
+    "a macro": """#define «e» 2.0
+#define TWICE(f) (f * «e»)
+float kernel(ivec2 texel) {
+#if defined(«e») && «e» > 1
+    return TWICE(«e») + 1e3;
+#else
+    return 1.0;
+#endif
+}""",
     "top level": """float «e»(float f) { return f * 1e-3; }
 #define CALL(e) (e)
 float kernel(ivec2 texel) { return CALL(«e»(1e3)); }""",
@@ -391,11 +427,11 @@ def test_a_rename_changes_what_the_name_stands_for(editor: Editor, folder: Path,
         ("float kernel(ivec2 t) { return 2.0f; }", "f;", "far", "no name here"),
         ("float kernel(ivec2 t) { return 0xFFu; }", "FFu", "far", "no name here"),
         (
-            "#define STEP (1.0 + e)\n#define TWICE (STEP * 2.0)\n"
+            "#define STEP (1.0 + e)\n#define TWICE (STEP * 2.0)\nfloat f(float e) { return STEP; }\n"
             "float kernel(ivec2 t) { float e = 1.0; return TWICE; }",
             "e = 1",
             "east",
-            r"'e' is in the macro STEP at .*hill\.glsl:3, which this function uses",
+            r"'e' is in the macro STEP at .*hill\.glsl:3",
         ),
         (
             "float far = 1.0;\n#define STEP (1.0 + far)\n"
@@ -403,6 +439,30 @@ def test_a_rename_changes_what_the_name_stands_for(editor: Editor, folder: Path,
             "e = 1",
             "far",
             "a name of this function already",
+        ),
+        (
+            "float kernel(ivec2 t) { float e = 1.0, far = 2.0; { float f = e; return f * far; } }",
+            "e = 1",
+            "far",
+            "a name of this function already: .*hill.glsl:3",
+        ),
+        (
+            "float far(float e) { return e; }\nfloat kernel(ivec2 t) { float e = 1.0; return far(e); }",
+            "e = 1",
+            "far",
+            "a name of this function already",
+        ),
+        (
+            "struct W { float e, far; };\nfloat kernel(ivec2 t) { W w; return w.e; }",
+            "e, far",
+            "far",
+            "is a name in .*hill.glsl:3 already",
+        ),
+        (
+            "#define FAR 1.0\nfloat kernel(ivec2 t) { float e = FAR; return e; }",
+            "e = FAR",
+            "FAR",
+            "already",
         ),
         (
             "#define SQ(e) (e * e)\nfloat kernel(ivec2 t) { return SQ(1.0); }",

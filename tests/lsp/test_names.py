@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from playground.lsp.shader import locals_of, words
-from playground.shader.outline import code_of, outline
+from playground.lsp.shader import syntax_of, words
 
 TEXT = """// A file. float no(int comment);
 #ifndef GUARD
@@ -29,20 +28,20 @@ uniform vec3 tint = vec3(1.0);  //! colour
 """
 
 
-def test_a_function_knows_its_arguments_and_all_that_it_declares() -> None:
-    steep = next(item for item in outline(TEXT) if item.name == "steep")
-    result = locals_of(TEXT, steep)
-    assert [item.name for item in result] == ["slope", "march", "first", "second", "step", "far"]
-    assert all(TEXT[item.at :].startswith(item.name) for item in result)
+def test_what_can_be_named_at_a_place_is_known() -> None:
+    syntax = syntax_of(TEXT)
+    inside = syntax.visible(TEXT.index("first += far"))
+    assert [*inside] == ["slope", "march", "first", "second", "step", "far"]
+    assert all(TEXT[syntax.place(symbol) :].startswith(name) for name, symbol in inside.items())
+    assert [*syntax.visible(TEXT.index("return first"))] == ["slope", "march", "first", "second"]
 
 
 def test_words_are_those_of_the_code() -> None:
-    result = {word for word, _ in words('#include "a/b.glsl"\n' + TEXT)}
+    result = {word.text for word in words('#include "a/b.glsl"\n' + TEXT)}
     assert result >= {"steep", "TWICE", "march", "far"}
     assert not result & {"no", "comment", "hidden", "Not", "glsl", "colour"}
-    assert len(code_of(TEXT)) == len(TEXT)
 
 
 def test_letters_of_numbers_are_no_names() -> None:
     text = "float a = 1e-3 + 2.0f + 3.e5 + .5e3f + 0xFFu + 0Xe1 + 1u + 4.f - e; vec2 b = v1e3.xy * 1E+2;\n"
-    assert [word for word, _ in words(text)] == ["float", "a", "e", "vec2", "b", "v1e3", "xy"]
+    assert [word.text for word in words(text)] == ["float", "a", "e", "vec2", "b", "v1e3", "xy"]

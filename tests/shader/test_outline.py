@@ -66,9 +66,9 @@ def test_what_follows_a_pragma_with_slashes_is_declared(pragma: str) -> None:
     assert [item.name for item in outline(text)] == ["gain", "kernel"]
 
 
-def test_what_a_bracket_never_closes_is_no_other_function() -> None:
+def test_a_bracket_that_is_never_closed_hides_no_other_function() -> None:
     text = "float a(float x) {\n    if (x > 0.0) {\n    return x;\n}\nfloat b() { return 1.0; }\n"
-    assert [item.name for item in outline(text)] == ["a"]
+    assert [item.name for item in outline(text)] == ["a", "b"]
 
 
 def test_every_library_function_is_in_outline_of_its_file() -> None:
