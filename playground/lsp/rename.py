@@ -139,11 +139,9 @@ class _User:
     """A shader in which names change."""
 
     shader: Shader
-    edits: dict[int, tuple[str, str]] = field(default_factory=dict)  # of its unit: place → old, new
-
-    @property
-    def unit(self) -> Unit:
-        return self.shader.unit
+    edits: dict[tuple[Path, int], tuple[str, str]] = field(default_factory=dict)  # file, place → old, new
+    others: dict[tuple[Path, int], str] = field(default_factory=dict)  # where it means something else → macro
+    is_in_macro: bool = False
 
 
 class _Rename:
@@ -158,22 +156,21 @@ class _Rename:
         self.meaning = _meaning(self.shader, name, start)
         self.kind = self.meaning[0]
         self.parameter = self.shader.parameter(name) if self.kind == "top" else None
-        self.declared: set[tuple[Path, int]] = set()  # of a local
+        self.declared: set[tuple[Path, int]] = set()  # of a local: where one of its declarations is
         self._shaders: dict[Path, Shader] = {}
         self.users = self._users()
 
     def places(self) -> Iterator[tuple[Path, set[int]]]:
         """Yield each file with the places of the name in it."""
-        yield from ((path, set(edits)) for path, edits in self._by_file().items())
+        yield from ((path, set(edits)) for path, edits in self._by_file(self.users).items())
 
     def edits(self) -> dict[Path, list[Edit]]:
-        changes = self._by_file()
-        for path, places in changes.items():
+        changes = self._by_file(self.users)
+        for path in changes:
             if not self._is_ours(path):
-                raise Refused(self._outside(path, min(places)))
+                raise Refused(self._outside(path))
         for user in self.users:
-            self._check_conflicts(user, changes)
-            self._check_meanings(user)
+            self._check_others(user, changes)
         edits_by_file = {
             path: [(at, at + len(old), new) for at, (old, new) in places.items()]
             for path, places in changes.items()
@@ -193,7 +190,7 @@ class _Rename:
     def _users(self) -> list[_User]:
         """Return every shader that reads a file in which the name changes."""
         users = [self._user(self.shader)]
-        if self.kind == "local" and not self._is_in_macro(users[0]):
+        if self.kind == "local" and not users[0].is_in_macro:
             return users
         changed = set(self._by_file(users))
         rest = [self._shader(path) for path in self._files(SHADERS)]
@@ -202,38 +199,47 @@ class _Rename:
             if not near:
                 return users
             rest = [s for s in rest if s not in near]
-            users += [user for shader in near if (user := self._user(shader)).edits]
+            users += [self._user(shader) for shader in near]
             changed |= set(self._by_file(users))
 
     def _user(self, shader: Shader) -> _User:
-        user = _User(shader)
-        syntax = shader.unit.syntax
-        own = self._own_meanings(shader)
+        """Find the name in a shader; raise ``Refused`` where the new one would change a meaning there."""
+        user, unit, places = _User(shader), shader.unit, dict[int, tuple[str, str]]()
+        syntax = unit.syntax if shader is self.shader else Syntax(unit.text)  # one alone is seen again
+        own = self._own_meanings(unit, syntax)
         for old, new in self._names.items():
             for each in syntax.occurrences(old):
                 is_meant = each.meaning in own if old == self.name else each.meaning == ("top", old)
-                if is_meant and each.at >= 0:
-                    user.edits[each.at] = (old, new)
-                elif is_meant:
+                if is_meant and each.at < 0:
                     raise Refused(f"'{old}' is put together by a macro in {shown(shader.path)}")
+                if is_meant:
+                    places[each.at] = (old, new)
+                    user.is_in_macro |= bool(each.macro)
+                elif each.at >= 0:
+                    user.others[unit.origin(each.at)] = each.macro
+        user.edits = {unit.origin(at): change for at, change in places.items()}
+        unknown = ("member", "", self.name)
+        if (
+            self.kind == "member"
+            and self.new != self.name
+            and not syntax.is_swizzle(self.name, "")
+            and any(each.meaning == unknown for each in syntax.occurrences(self.name))
+        ):
+            raise Refused(f"'.{self.name}' in {shown(shader.path)} is of something with no known type")
+        self._check_others(user, self._by_file([user]))
+        if shader is self.shader or self.new in unit.text:
+            self._check_meanings(unit, syntax, own, places)
         return user
 
-    def _own_meanings(self, shader: Shader) -> set[Meaning]:
+    def _own_meanings(self, unit: Unit, syntax: Syntax) -> set[Meaning]:
         """Return what the name has to mean in a shader: of a local, what is declared in the same place."""
         if self.kind != "local":
             return {self.meaning}
-        if shader is self.shader:
-            places = [e.at for e in shader.unit.syntax.occurrences(self.name) if e.meaning == self.meaning]
-            self.declared = {shader.unit.origin(at) for at in places[:1] if at >= 0}
+        found = syntax.occurrences(self.name)
+        if not self.declared:
+            self.declared = {unit.origin(e.at) for e in found if e.meaning == self.meaning and e.at >= 0}
             return {self.meaning}
-        found: set[Meaning] = set()
-        for path, at in self.declared:
-            found |= shader.unit.meanings(path, at, self.name)
-        return found
-
-    def _is_in_macro(self, user: _User) -> bool:
-        found = user.unit.syntax.occurrences(self.name)
-        return any(each.macro and each.at in user.edits for each in found)
+        return {e.meaning for e in found if e.at >= 0 and not e.macro and unit.origin(e.at) in self.declared}
 
     @property
     def _names(self) -> dict[str, str]:
@@ -243,12 +249,11 @@ class _Rename:
             names |= {f"{prefix}{self.name}": f"{prefix}{self.new}" for prefix in (TOWARDS, WIRED, MATCHES)}
         return names
 
-    def _by_file(self, users: Iterable[_User] | None = None) -> dict[Path, dict[int, tuple[str, str]]]:
+    def _by_file(self, users: Iterable[_User]) -> dict[Path, dict[int, tuple[str, str]]]:
         """Return the places that change, by file: place → old, new."""
         places: dict[Path, dict[int, tuple[str, str]]] = {}
-        for user in self.users if users is None else users:
-            for at, change in user.edits.items():
-                path, place = user.unit.origin(at)
+        for user in users:
+            for (path, place), change in user.edits.items():
                 places.setdefault(path, {})[place] = change
         return places
 
@@ -270,43 +275,38 @@ class _Rename:
     def _is_ours(self, path: Path) -> bool:
         return path.is_relative_to(self.folder) or self.documents.is_open_folder(path)
 
-    def _outside(self, path: Path, at: int) -> str:
+    def _outside(self, path: Path) -> str:
         syntax = syntax_of(self.documents.text_of(path).text)
         what = "is declared" if syntax.declares(self.name) else "is used"
         return f"'{self.name}' {what} in {shown(path)}, which is not in the open folder"
 
     # ── whether every name keeps its meaning ─────────────────────────────────
 
-    def _check_conflicts(self, user: _User, changes: Mapping[Path, Mapping[int, object]]) -> None:
+    def _check_others(self, user: _User, changes: Mapping[Path, Collection[int]]) -> None:
         """Raise ``Refused`` where a place that changes means something else in a shader, too."""
-        own = self._own_meanings(user.shader)
-        for each in user.unit.syntax.occurrences(self.name):
-            if each.at < 0 or each.meaning in own:
-                continue
-            path, place = user.unit.origin(each.at)
+        if self.new == self.name:
+            return
+        for (path, place), macro in user.others.items():
             if place in changes.get(path, ()):
                 where = self._location(path, place)
-                raise Refused(
-                    f"'{self.name}' is in the macro {each.macro} at {where}, which is used where it means"
-                    " something else"
-                    if each.macro
-                    else f"'{self.name}' at {where} means something else in {shown(user.shader.path)}"
-                )
-        if self.kind == "member" and any(
-            each.meaning == ("member", "", self.name) and not user.unit.syntax.is_swizzle(self.name, "")
-            for each in user.unit.syntax.occurrences(self.name)
-        ):
-            raise Refused(f"'.{self.name}' in {shown(user.shader.path)} is of something with no known type")
+                if macro:
+                    raise Refused(
+                        f"'{self.name}' is in the macro {macro} at {where}, which is used where it means another"
+                    )
+                raise Refused(f"'{self.name}' at {where} means something else in {shown(user.shader.path)}")
 
-    def _check_meanings(self, user: _User) -> None:
+    def _check_meanings(
+        self, unit: Unit, syntax: Syntax, own: set[Meaning], places: Mapping[int, tuple[str, str]]
+    ) -> None:
         """Raise ``Refused`` where, in a shader with the new name, any name would mean something else."""
-        syntax = user.unit.syntax
-        text = _edited(user.unit.text, ((at, at + len(old), new) for at, (old, new) in user.edits.items()))
-        place = _first_difference(syntax, syntax_of(text))
+        if self.new == self.name:
+            return
+        edits = ((at, at + len(old), new) for at, (old, new) in places.items())
+        place = _first_difference(syntax, Syntax(_edited(unit.text, edits)))
         taken: set[Meaning] = {("macro", self.new)}
         taken |= {("member", self.meaning[1], self.new)} if self.kind == "member" else set()
         taken |= {("top", self.new)} if self.kind in ("top", "macro") else set()
-        for meaning in self._own_meanings(user.shader) if self.kind == "local" else ():
+        for meaning in own if self.kind == "local" else ():
             taken |= {("local", self.new, scope) for scope in _same_scope(meaning, syntax)}
         is_unsure = not syntax.is_whole and self.kind != "member"
         for each in syntax.occurrences(self.new):
@@ -314,7 +314,7 @@ class _Rename:
                 place = each.at
                 break
         if place is not None:
-            path, at = user.unit.origin(place)
+            path, at = unit.origin(place)
             if self.kind == "local" and path == self.shader.path:
                 raise Refused(f"'{self.new}' is a name of this function already: {self._location(path, at)}")
             raise Refused(f"'{self.new}' is a name in {self._location(path, at)} already")

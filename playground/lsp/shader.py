@@ -349,6 +349,7 @@ class Syntax:
 
     def __init__(self, text: str) -> None:
         self.text = text
+        self._occurrences: dict[str, list[Occurrence]] = {}
         self.tree = parse(text, all_branches=True)
         self._main = _Reading(self.tree)
         self.symbols = self._main.symbols
@@ -406,8 +407,11 @@ class Syntax:
 
     def occurrences(self, name: str) -> list[Occurrence]:
         """Return every place of a name in the text, in order; one in a macro's text may have several."""
-        if name not in self.text:
-            return []
+        if name not in self._occurrences:
+            self._occurrences[name] = self._found(name) if name in self.text else []
+        return self._occurrences[name]
+
+    def _found(self, name: str) -> list[Occurrence]:
         if name in self.macros:
             places = [word for word in words(self.text) if word.text == name and not word.is_parameter]
             return [Occurrence(word.start, ("macro", name)) for word in places]
