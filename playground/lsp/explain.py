@@ -12,6 +12,7 @@ from lsprotocol import types
 from playground.errors import DataError, PlaygroundError
 from playground.lsp import describe
 from playground.lsp.documents import Document, Documents, Text
+from playground.lsp.highlight import influence_text
 from playground.lsp.shader import (
     include_at,
     is_code,
@@ -76,13 +77,15 @@ def hover_shader(document: Document, documents: Documents, at: int) -> str:
     local = syntax_of(document.text).local_at(word, start)
     if local is not None:
         row = document.position(syntax_of(document.text).place(local)).line
-        return describe.code(document.lines[row].strip())
+        changes = influence_text(shader, word, start) if local.kind == "parameter" else ""
+        return "\n\n".join(filter(None, [describe.code(document.lines[row].strip()), changes]))
     if (parameter := shader.parameter(word)) is not None:
-        return describe.parameter(parameter)
+        return f"{describe.parameter(parameter)}\n\n{influence_text(shader, word, start)}"
     if shader.is_kernel and word in (names := shader.engine_names):
         glsl_type, meaning = names[word]
         brackets = "()" if word in RESERVED or word.startswith("previous") else ""
-        return f"{describe.code(f'{glsl_type} {word}{brackets}')}\n\n{meaning}"
+        head = describe.code(f"{glsl_type} {word}{brackets}")
+        return f"{head}\n\n{meaning}\n\n{influence_text(shader, word, start)}"
     found_here = [
         (path, declaration) for path, _, declaration in shader.declared() if declaration.name == word
     ]

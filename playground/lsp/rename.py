@@ -291,7 +291,7 @@ class _Rename:
                 where = self._location(path, place)
                 if macro:
                     raise Refused(
-                        f"'{self.name}' is in the macro {macro} at {where}, which is used where it means another"
+                        f"'{self.name}' is in the macro {macro} at {where}, where it means several things"
                     )
                 raise Refused(f"'{self.name}' at {where} means something else in {shown(user.shader.path)}")
 

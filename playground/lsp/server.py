@@ -23,10 +23,10 @@ from pygls.lsp.server import LanguageServer
 
 from playground._version import __version__
 from playground.errors import Diagnostic, PlaygroundError
-from playground.lsp import explain
+from playground.lsp import explain, highlight
 from playground.lsp.complete import complete_shader, complete_sketch
 from playground.lsp.documents import Checker, Document, Documents, Text
-from playground.lsp.rename import Refused, prepare, rename
+from playground.lsp.rename import Refused, prepare, references, rename
 from playground.lsp.shader import library_declared, word_at
 
 T = TypeVar("T")
@@ -272,6 +272,32 @@ def _definition(server: Server, params: types.DefinitionParams) -> types.Locatio
     return types.Location(server.documents.uri_of(target.path), text.range(target.start, target.end))
 
 
+def _references(server: Server, params: types.ReferenceParams) -> list[types.Location] | None:
+    if (opened := _at(server, params)) is None or opened[0].is_toml:
+        return None
+    locations = []
+    for path, places in references(opened[0], server.documents, opened[1]).items():
+        text = server.documents.text_of(path)
+        uri = server.documents.uri_of(path)
+        locations += [types.Location(uri, text.range(start, end)) for start, end in places]
+    return locations
+
+
+def _highlights(
+    server: Server, params: types.DocumentHighlightParams
+) -> list[types.DocumentHighlight] | None:
+    if (opened := _at(server, params)) is None or opened[0].is_toml:
+        return None
+    return highlight.highlights(opened[0], server.documents, opened[1])
+
+
+def _semantic_tokens(server: Server, params: types.SemanticTokensParams) -> types.SemanticTokens | None:
+    document = server.documents.get(params.text_document.uri)
+    if document is None or document.is_toml or not document.is_ours:
+        return None
+    return highlight.semantic_tokens(document, server.documents)
+
+
 def _symbols(server: Server, params: types.DocumentSymbolParams) -> list[types.DocumentSymbol] | None:
     document = server.documents.get(params.text_document.uri)
     if document is None or not document.is_ours:
@@ -334,6 +360,12 @@ _FEATURES: dict[str, tuple[Callable[..., object], object]] = {
     types.TEXT_DOCUMENT_COMPLETION: (_completion, types.CompletionOptions(_TRIGGERS)),
     types.TEXT_DOCUMENT_HOVER: (_hover, None),
     types.TEXT_DOCUMENT_DEFINITION: (_definition, None),
+    types.TEXT_DOCUMENT_REFERENCES: (_references, None),
+    types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: (_highlights, None),
+    types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: (
+        _semantic_tokens,
+        types.SemanticTokensRegistrationOptions(highlight.LEGEND, full=True),
+    ),
     types.TEXT_DOCUMENT_DOCUMENT_SYMBOL: (_symbols, None),
     types.TEXT_DOCUMENT_DOCUMENT_COLOR: (_colours, None),
     types.TEXT_DOCUMENT_COLOR_PRESENTATION: (_presentations, None),

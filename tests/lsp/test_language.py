@@ -154,6 +154,113 @@ def test_symbols_are_what_a_file_declares(editor: Editor, folder: Path) -> None:
     assert [item["name"] for item in result] == ["pass height", "preset sharp", "shot sharp"]
 
 
+REACH = """#pragma kernel(output = "height:r32f")
+uniform float gain = 1.0;   //! slider(0, 1)
+uniform vec2 sun = vec2(135.0, 30.0);  //! direction
+float lit(float slope, float loss) {
+    float rest = 1.0 - loss;
+    return slope * rest;
+}
+float kernel(ivec2 texel) {
+    float far = float(texel.x);
+    float near = far * gain;
+    if (near > 2.0) {
+        near = 2.0;
+    }
+    return near + lit(towards_sun.z, 0.5);
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("word", "lines"),
+    [("gain =", "10-12, 14"), ("sun =", "6, 14"), ("loss)", "5-6, 14"), ("texel)", "9-12, 14")],
+)
+def test_hover_tells_the_lines_that_a_name_can_change(
+    editor: Editor, folder: Path, word: str, lines: str
+) -> None:
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, REACH)
+    assert f"can change lines {lines}" in editor.at("hover", uri, *place(REACH, word))["contents"]["value"]
+
+
+def test_a_uniform_is_highlighted_with_what_it_can_change(editor: Editor, folder: Path) -> None:
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, REACH)
+    result = editor.at("documentHighlight", uri, *place(REACH, "gain ="))
+    by_kind = {(item["kind"], item["range"]["start"]["line"] + 1) for item in result}
+    assert by_kind == {(3, 2), (2, 10), (1, 10), (1, 11), (1, 12), (1, 14)}
+    result = editor.at("documentHighlight", uri, *place(REACH, "near ="))
+    assert [(i["kind"], i["range"]["start"]["line"] + 1) for i in result] == [
+        (3, 10),
+        (2, 11),
+        (3, 12),
+        (2, 14),
+    ]
+
+
+def test_references_are_in_every_file(editor: Editor, folder: Path, hill: str) -> None:
+    result = editor.at("references", hill, *place(KERNEL, "kept_of("), context={"includeDeclaration": True})
+    lines = {(item["uri"].rpartition("/")[2], item["range"]["start"]["line"]) for item in result}
+    assert lines == {
+        ("hill.glsl", place(KERNEL, "kept_of(")[0]),
+        ("shade.glsl", place(LIBRARY, "kept_of(")[0]),
+    }
+
+
+def test_each_name_has_its_kind(editor: Editor, folder: Path) -> None:
+    text = (
+        '#pragma kernel(output = "height:r32f")\n#define TWICE(x) ((x) * 2.0)\n'
+        "struct Wave { float far; };\nuniform float gain = 1.0;  //! slider(0, 1)\n"
+        "float kernel(ivec2 texel) { Wave wave; return TWICE(wave.far) * gain * relief; }\n"
+    )
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, text)
+    legend = editor.initialized["capabilities"]["semanticTokensProvider"]["legend"]["tokenTypes"]
+    data = editor.ask("textDocument/semanticTokens/full", textDocument={"uri": uri})["data"]
+    kinds, line, column = {}, 0, 0
+    for down, right, length, kind, _ in zip(*[iter(data)] * 5, strict=True):
+        line, column = line + down, right + (column if down == 0 else 0)
+        kinds[text.split("\n")[line][column : column + length]] = legend[kind]
+    assert kinds == {
+        "TWICE": "macro",
+        "Wave": "struct",
+        "far": "property",
+        "gain": "variable",
+        "kernel": "function",
+        "texel": "parameter",
+        "wave": "variable",
+        "relief": "variable",
+    }
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("wave.|;", {"far", "at"}),
+        ("float f = 2.0 * (waves[1 + 1].| + 1.0);", {"far", "at"}),
+        ("float f = sea.wave.|", {"far", "at"}),
+        ("return made(wave.far).|", {"far", "at"}),
+        ("sea.| = wave;", {"wave"}),
+        ("float f = wave.at.|;", set()),
+    ],
+)
+def test_a_dot_is_completed_with_the_members_of_its_type(
+    editor: Editor, hill: str, line: str, expected: set[str]
+) -> None:
+    structs = "struct Wave { float far; vec2 at; };\nstruct Sea { Wave wave; };\n"
+    structs += "Wave made(float far) { return Wave(far, vec2(1.0)); }\n"
+    body = f"    Wave wave, waves[3]; Sea sea;\n    {line}\n    float far"
+    assert (
+        completed(
+            editor,
+            hill,
+            KERNEL.replace("float kernel", f"{structs}float kernel").replace("    float far", body),
+        )
+        == expected
+    )
+
+
 # ── sketches ─────────────────────────────────────────────────────────────────
 
 

@@ -77,12 +77,13 @@ class Influence:
                 self._function = None
                 self._visit(node, frozenset())
 
-    def statements(self, symbols: Iterable[Symbol]) -> list[Node]:
-        """Return the statements that any of some symbols can influence, or whether they run.
+    def statements(self, names: Iterable[Symbol | str]) -> list[Node]:
+        """Return the statements that any of some names can influence, or whether they run.
 
-        Of a branch or a loop that is its condition; of a declaration, its declarator.
+        Of a branch or a loop that is its condition; of a declaration, its declarator. ``names`` has texts of
+        what the text does not declare.
         """
-        facts: set[Hashable] = set(symbols)
+        facts: set[Hashable] = set(names)
         rest = list(facts)
         while rest:
             new = self._targets.get(rest.pop(), set()) - facts
@@ -181,8 +182,8 @@ class Influence:
         """Return what an expression reads, without what it does."""
         facts: set[Hashable] = set()
         for each in walk(node):
-            if isinstance(each, Name) and (symbol := self._symbol_at.get(each.first)) is not None:
-                facts.add(symbol)
+            if isinstance(each, Name):
+                facts.add(self._symbol_at.get(each.first, each.name))
             elif isinstance(each, Call):
                 facts |= {("result", function.node) for function in self._functions(each)}
             elif isinstance(each, Declarator) and (symbol := self._symbol_at.get(each.at)) is not None:
@@ -194,8 +195,7 @@ class Influence:
     def _reads(self, node: Node, around: frozenset[Hashable]) -> frozenset[Hashable]:
         """Return what an expression reads; note what flows where in it."""
         if isinstance(node, Name):
-            symbol = self._symbol_at.get(node.first)
-            return frozenset({symbol}) if symbol is not None else frozenset()
+            return frozenset({self._symbol_at.get(node.first, node.name)})
         if isinstance(node, Conditional):
             own = self._reads(node.condition, around)
             return own | self._reads(node.yes, around | own) | self._reads(node.no, around | own)
@@ -221,7 +221,7 @@ class Influence:
             self._subscripts(argument, around) if number in written else self._reads(argument, around)
             for number, argument in enumerate(node.arguments)
         ]
-        own: frozenset[Hashable] = frozenset().union(*arguments)
+        own: frozenset[Hashable] = frozenset().union(*arguments, () if functions else (node.name,))
         for size in node.arrays:
             own |= self._reads(size, around) if size is not None else frozenset()
         for function in functions:
