@@ -27,8 +27,10 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.api import headless as headless
     from playground.api import parameters as parameters
     from playground.api import render as render
+    from playground.api import trace as trace
     from playground.engine.engine import Engine as Engine
     from playground.engine.frame import Frame as Frame
+    from playground.engine.trace.model import Trace as Trace
     from playground.errors import ContextError as ContextError
     from playground.errors import DataError as DataError
     from playground.errors import ParameterError as ParameterError
@@ -57,7 +59,7 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.sketch.techniques import shipped_techniques as shipped_techniques
 
 _NAMES = {
-    "playground.api": "headless render parameters",
+    "playground.api": "headless render parameters trace",
     "playground.publish.export": "export",
     "playground.publish.large": "write_large",
     "playground.publish.series": "render_sequence render_sweep",
@@ -65,6 +67,7 @@ _NAMES = {
     "playground.publish.video": "render_video",
     "playground.engine.engine": "Engine",
     "playground.engine.frame": "Frame",
+    "playground.engine.trace.model": "Trace",
     "playground.errors": "ContextError DataError ParameterError PlainFormWarning PlaygroundError "
     "PlaygroundWarning SandboxCrash SandboxError SandboxTimeout ShaderError SketchError",
     "playground.publish.notebook.show": "compare widget",

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from playground.engine.engine import Engine, open_engine
 from playground.engine.frame import Frame
 from playground.engine.plain_forms import warn
 from playground.engine.renderer import CACHE_BYTES
+from playground.engine.trace.model import MAX_EVENTS, Trace
 from playground.errors import Diagnostic, PlaygroundWarning
 from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.load import opened
@@ -72,6 +73,44 @@ def render(
     with headless() as engine:
         engine.options.keeps = False
         return engine.render(opened_sketch.plainly(plain).with_values(values or {}), size=size, time=time)
+
+
+def trace(
+    sketch: Sketch | str | Path,
+    path: str,
+    *,
+    texel: tuple[int, int],
+    iteration: int | Sequence[int] | None = None,
+    function: str | None = None,
+    size: tuple[int, int] = DEFAULT_PICTURE,
+    time: float = 0.0,
+    values: Mapping[str, object] | None = None,
+    limit: int = MAX_EVENTS,
+) -> Trace:
+    """Return every value of one texel's run of a pass, with a context of its own; see ``Engine.trace``.
+
+    ``sketch`` is a loaded one or what ``load`` takes, ``path`` a pass of it, ``texel`` (column, row) from the
+    south-west. ``iteration`` is one of a pass that repeats or of a loop around it, without it the last;
+    ``function`` None for those of the kernel's own file, "all" or the name of one. ``size`` of the picture in
+    pixels, ``time`` in seconds, ``values`` of parameters by path; at most ``limit`` values are recorded.
+
+        trace = playground.trace("l_dot_n", "product", texel=(10, 20))
+        print(trace.calls_of("kernel")[0]["slope"])
+
+    Raises ``PlaygroundError`` for a pass, texel, iteration or function that there is not.
+    """
+    with headless() as engine:
+        return engine.trace(
+            sketch,
+            path,
+            texel=texel,
+            iteration=iteration,
+            function=function,
+            size=size,
+            time=time,
+            values=values,
+            limit=limit,
+        )
 
 
 def parameters(sketch: Sketch) -> dict[str, tuple[Parameter, Value]]:

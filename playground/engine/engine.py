@@ -310,13 +310,15 @@ class Engine(Renderer):
         function: str | None = None,
         limit: int = MAX_EVENTS,
     ) -> Trace:
-        """Return a trace of a pass of the last frame as it was drawn; arguments and errors as ``trace``.
+        """Return a trace of a pass of the last frame as it was drawn.
+
+        ``path``, ``texel``, ``iteration``, ``function`` and ``limit`` are those of ``trace``.
 
             with playground.headless() as engine:
                 engine.render("l_dot_n", size=(64, 36))
                 print(engine.trace_frame("product", texel=(10, 20)).texel_values)
 
-        Raises ``SketchError`` before the first frame.
+        Raises as ``trace``, and ``SketchError`` before the first frame.
         """
         last = self.record.plan
         if last is None:

@@ -139,7 +139,13 @@ class Loop:
 
 @dataclass(slots=True)
 class Trace:
-    """Every recorded value of one run of a step's shader for one texel."""
+    """Every recorded value of one run of a pass's shader for one texel.
+
+    ``playground.trace`` and ``Engine.trace`` return one:
+
+        trace = playground.trace("l_dot_n", "product", texel=(10, 20))
+        assert trace.is_exact and isinstance(trace, playground.Trace)
+    """
 
     step: str  # path of the pass: "height.detail"
     texel: tuple[int, int]  # column and row, from the south-west
@@ -157,11 +163,24 @@ class Trace:
     is_discarded: bool = False  # whether the run ended in a discard
 
     def calls_of(self, function: str) -> list[Call]:
-        """Return the calls of a function, in order."""
+        """Return the calls of a ``function``, in order.
+
+        For example:
+
+            trace = playground.trace("l_dot_n", "product", texel=(10, 20))
+            print(trace.calls_of("kernel")[0]["slope"])
+        """
         return [call for call in self.calls if call.function == function]
 
     def lines(self, path: str, call: Call | int | None = None) -> dict[int, list[Event]]:
-        """Return the events of a file by line, of one call or of all, in order."""
+        """Return the events of the file at ``path`` by line, of one ``call`` or of all, in order.
+
+        For example:
+
+            trace = playground.trace("l_dot_n", "product", texel=(10, 20))
+            for line, events in trace.lines(trace.events[0].path).items():
+                print(line, [event.value for event in events])
+        """
         result: dict[int, list[Event]] = {}
         for event in self.events if call is None else self._call(call).events:
             if event.path == path:
@@ -169,12 +188,25 @@ class Trace:
         return result
 
     def loops(self, call: Call | int | None = None) -> list[Loop]:
-        """Return the runs of all loops, of one call or of all, in the order in which they begin."""
+        """Return the runs of all loops, of one ``call`` or of all, in the order in which they begin.
+
+        For example:
+
+            trace = playground.trace("diamond_square", "height.raw", texel=(96, 96), iteration=7)
+            for loop in trace.loops():
+                print(loop.variable, [row["total"] for row in loop.rows])
+        """
         calls = self.calls if call is None else [self._call(call)]
         return [loop for each in calls for loop in _loops(each)]
 
     def first_not_finite(self) -> Event | None:
-        """Return the first event that has NaN or an infinity."""
+        """Return the first event that has NaN or an infinity, if there is one.
+
+        For example:
+
+            trace = playground.trace("l_dot_n", "product", texel=(10, 20))
+            assert trace.first_not_finite() is None
+        """
         return next((event for event in self.events if not event.is_finite), None)
 
     def _call(self, call: Call | int) -> Call:
