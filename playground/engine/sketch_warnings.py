@@ -7,7 +7,6 @@
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections import defaultdict
 from collections.abc import Iterator
@@ -18,10 +17,12 @@ from typing import NamedTuple
 from playground.engine.plan_warnings import own_kernels
 from playground.errors import Diagnostic, PlaygroundError
 from playground.files import read_regular
+from playground.memo import TEXTS
 from playground.paths import GLSL, shown
 from playground.shader.expressions import names_in
 from playground.shader.parameter import write
 from playground.shader.reserved_names import GLSL_WORDS
+from playground.shader.syntax.influence import unused
 from playground.shader.syntax.nodes import (
     Assign,
     Call,
@@ -38,7 +39,10 @@ from playground.shader.syntax.nodes import (
     While,
     children,
 )
+from playground.shader.syntax.parser import parse
 from playground.shader.syntax.symbols import Symbol, Symbols, readings
+from playground.shader.syntax.symbols import resolve as resolve_names
+from playground.shader.syntax.tokens import tokenize
 from playground.sketch.assign import apply, effective_values, resolve
 from playground.sketch.model import (
     CpuSource,
@@ -47,6 +51,7 @@ from playground.sketch.model import (
     Kernel,
     Parameter,
     PlainFragment,
+    PlainShader,
     Sketch,
     Value,
     kernels_of,
@@ -136,8 +141,8 @@ def _setters(graph: Graph, prefix: str) -> dict[str, str]:
 
 
 def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:
-    """Return warnings of what has no effect, or an undefined one: ``unread``, ``unheeded``, ``unwritten``."""
-    return (*unread(kernel), *unheeded(kernel), *unwritten(kernel))
+    """Return warnings of what has no effect, or an undefined one: a kernel's texts are parsed for it."""
+    return (*unread(kernel), *unused_locals(kernel), *unheeded(kernel), *unwritten(kernel))
 
 
 def kernel_warnings(graph: Graph) -> list[Diagnostic]:
@@ -154,25 +159,71 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
     """
     if isinstance(kernel, CpuSource | Draw):
         return ()
-    variants = [inner for v in kernel.variants for _, inner in kernels_of(v.technique)]
-    texts = [each.source for each in (kernel, *variants)]
-    code = "\n".join([text.code for text in texts] + [line.pragma for text in texts for line in text.lines])
+    names = [*(p.name for p in kernel.parameters), *(i.name for i in kernel.inputs)]
+    if not names:
+        return ()
+    symbols = _symbols(kernel.source.code)
+    read = _read_words(kernel, symbols)
     diagnostics = []
-    for name in [*(p.name for p in kernel.parameters), *(i.name for i in kernel.inputs)]:
-        declared = rf"\buniform\b[^;\n]*?\b{re.escape(name)}\s*(?:=[^;\n]*)?;"
-        rest = re.sub(declared, "", code)
-        if re.search(rf"\b(?:\w+_)?{re.escape(name)}\b", rest):
+    for name in names:
+        if any(word == name or word.endswith(f"_{name}") for word in read):
             continue
         if name in _counted(Path(kernel.path)):
             continue
-        for line in kernel.source.lines:
-            if match := re.search(declared, line.code):
-                column = match.start() + match[0].index(name) + 1
-                diagnostics.append(
-                    line.diagnostic(f"nothing reads '{name}', so it has no effect", column, "warning")
-                )
-                break
+        declared = [symbol for symbol in symbols.symbols if symbol.name == name and symbol.kind == "uniform"]
+        for symbol in declared[:1]:
+            message = f"nothing reads '{name}', so it has no effect"
+            diagnostics.append(_at_symbol(kernel, symbols, symbol, message))
     return tuple(diagnostics)
+
+
+def _read_words(kernel: Kernel, symbols: Symbols) -> set[str]:
+    """Return the names that something reads of what stands at a kernel's top level, or around it."""
+    variants = [inner for v in kernel.variants for _, inner in kernels_of(v.technique)]
+    texts = [line.pragma for each in (kernel, *variants) for line in each.source.lines if line.pragma]
+    texts += [each.source.code for each in variants]
+    tree = symbols.tree
+    # Of a pragma the words in quotes, of a variant those of its macros too.
+    tokens = [token for text in texts for token in tokenize(text.translate(_OUTSIDE))[0]]
+    tokens += [token for macro in tree.preprocessed.macros for token in macro.body]
+    tokens += [token for branch in tree.branches for token in branch.tokens]
+    for reference in symbols.references:
+        symbol = reference.symbol
+        if symbol is None or (symbol.function is None and reference.token != symbol.token):
+            tokens.append(tree.tokens[reference.token])
+    return {token.text for token in tokens}
+
+
+def unused_locals(kernel: Kernel) -> tuple[Diagnostic, ...]:
+    """Return a warning for each local variable that nothing names behind its declaration.
+
+    Other tools' shaders are left alone, and so is what a kernel includes from the library that ships.
+    """
+    if isinstance(kernel, CpuSource | PlainShader):
+        return ()
+    own = not Path(kernel.path).is_relative_to(GLSL)
+    symbols = _symbols(kernel.source.code)
+    diagnostics = []
+    for symbol in unused(symbols) if not symbols.tree.errors else ():
+        line = kernel.source.lines[symbols.tree.line(symbol.token)]
+        if symbol.kind == "local" and not (own and Path(line.file).is_relative_to(GLSL)):
+            message = f"nothing reads '{symbol.name}'"
+            diagnostics.append(_at_symbol(kernel, symbols, symbol, message))
+    return tuple(diagnostics)
+
+
+_OUTSIDE = str.maketrans('"#', "  ")
+
+
+@TEXTS.cached(weight=256)  # nodes and tokens are many
+def _symbols(code: str) -> Symbols:
+    return resolve_names(parse(code, all_branches=True))
+
+
+def _at_symbol(kernel: Kernel, symbols: Symbols, symbol: Symbol, message: str) -> Diagnostic:
+    token = symbols.tree.tokens[symbol.token]
+    row, column = symbols.tree.place(token.start if token.start == token.spelled else max(token.spelled, 0))
+    return kernel.source.lines[row].diagnostic(message, column + 1, "warning")
 
 
 def _counted(path: Path) -> frozenset[str]:

@@ -8,7 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.sketch_warnings import newly_shadowed, shadowed_by_files, unread, unwritten
+from playground.engine.sketch_warnings import (
+    newly_shadowed,
+    shadowed_by_files,
+    unread,
+    unused_locals,
+    unwritten,
+)
 from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import GLSL
 from playground.shader.source import read_source
@@ -64,8 +70,28 @@ def test_the_library_has_none() -> None:
             continue  # files of sketches, which include from their own folder
         if kernel is not None:
             seen += 1
-            assert unread(kernel) == (), path
+            assert (*unread(kernel), *unused_locals(kernel)) == (), path
     assert seen > 50
+
+
+@pytest.mark.parametrize(
+    ("declared", "body", "warnings"),
+    [
+        ("", "float rest = 2.0;", ["3:35 nothing reads 'rest'"]),
+        ("", "float e = 1e3, f = 2.0f; e += f;", []),
+        ("#define TWICE(x) float y = x; y * 2.0", "float rest = 2.0; TWICE(rest);", []),
+        ("uniform float rest = 1.0;", "float rest = 2.0;", ["3:35 nothing reads 'rest'"]),
+        ("", "{ float rest = 2.0; } float rest = 1.0; rest++;", ["3:37 nothing reads 'rest'"]),
+        ('#include "noise/hash.glsl"', "float rest = 2.0;", ["3:35 nothing reads 'rest'"]),
+        ("", "int i; for (int i = 0; i < 3; i++) {}", ["3:33 nothing reads 'i'"]),
+        ("float half_of(float x, float unused) { return x; }", "", []),
+    ],
+)
+def test_a_local_that_nothing_names(tmp_path: Path, declared: str, body: str, warnings: list[str]) -> None:
+    found_in(tmp_path, declared, body)
+    kernel = read_kernel(tmp_path / "k.glsl", tmp_path)
+    assert kernel is not None
+    assert [f"{d.line}:{d.column} {d.message}" for d in unused_locals(kernel)] == warnings
 
 
 COUNTED = '#pragma kernel(output = "height:r32f")\nuniform int steps = 4;  //! slider(1, 9)\n'

@@ -21,7 +21,7 @@ uniform sampler2D lit;        //! input
 uniform sampler2D sky;        //! input
 uniform sampler2D scattered;  //! input("linear", "black")
 uniform sampler2D left;       //! input("linear", "black")
-#include "lighting/parameters/sun.glsl"
+uniform sampler2D daylight;   //! input("black")
 #include "view/parameters/haze.glsl"
 
 vec3 in_air(vec3 light, vec2 share, float eye_distance);

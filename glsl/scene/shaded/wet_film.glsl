@@ -22,7 +22,7 @@ uniform sampler2D seen;     //! input
 uniform sampler2D ground;   //! input("linear", "mipmap")
 uniform sampler2D bumps;    //! input
 uniform sampler2D wetness;  //! input
-#include "lighting/parameters/sun.glsl"
+uniform sampler2D daylight; //! input("black")
 #include "lighting/parameters/skylight.glsl"
 
 const float MIN_RISE = 0.02;  // of mirrored rays: bumps do not mirror the ground

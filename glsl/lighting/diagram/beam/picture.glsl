@@ -80,7 +80,6 @@ vec4 kernel(ivec2 texel) {
     float spacing = spacing_of(grid, extent).x;
     Section section = section_of(clamp(row, 0, grid.y - 1), grid.x, shown, spacing, relief,
                                  bounds.x, foot, paper);
-    float farthest = paper.x + paper.y;
     vec2 to_sun = cos_sin_degrees(elevation);
     float climb = to_sun.y / max(to_sun.x, 1e-6);
     float growth = beam == CONE ? delta_r / max(to_sun.x, 1e-6) : 0.0;
