@@ -43,7 +43,7 @@ class Diagnostic:
     file: str = ""  # as the user would name it; empty when there is none
     line: int = 0  # from 1; 0 when unknown
     column: int = 0  # from 1; 0 when unknown
-    severity: str = "error"  # "error" or "warning"
+    severity: str = "error"  # "error" or "warning"; "hint" of what an editor shows as unnecessary
     excerpt: str = ""  # the offending line, as written
     chain: tuple[str, ...] = ()  # "file:line" of each #include that led here, outermost first
 

@@ -194,6 +194,7 @@ class Checker:
         lock: threading.RLock,
         publish: Callable[[Path, list[Diagnostic]], None],
         tell: Callable[[str], None],
+        hints: Callable[[Document], list[Diagnostic]],
         *,
         software: bool = False,
         device: int | None = None,
@@ -201,11 +202,11 @@ class Checker:
         """Make it; ``start`` starts it.
 
         ``lock`` is held while texts are read, not while the sandbox draws. ``publish`` gets all that is
-        wrong in a file whenever that changes; ``tell`` gets a message for the user. Both are called in
-        the checker's thread.
+        wrong in a file whenever that changes; ``tell`` gets a message for the user. ``hints`` returns what
+        could go of a shader, in place of a warning there. All are called in the checker's thread.
         """
         self._documents = documents
-        self._publish, self._tell = publish, tell
+        self._publish, self._tell, self._hints = publish, tell, hints
         self._sandbox = _Sandbox(lock, self._give_up_if_stale, self._without_graphics, software, device)
         self._lock = lock
         self._news = threading.Condition()
@@ -293,21 +294,27 @@ class Checker:
         if not document.is_ours:
             return _Result(document.version)
         result: dict[Path, list[Diagnostic]] = {}
-        with self._lock, self._documents.reading(), noting_places() as places:
+        hints: list[Diagnostic] = []
+        with self._lock, self._documents.reading(), noting_places() as looked_at:
             try:
                 report = check_file(document.path, self._sandbox)
                 diagnostics = [*report.errors, *report.warnings]
+                if report.ok and not document.is_toml:  # a misspelt name would be one that nothing reads
+                    hints = self._hints(document)
             except Stale:
                 raise
             except PlaygroundError as error:
                 diagnostics = list(error.diagnostics)
             except Exception as error:  # a mistake of ours must not end the thread
                 diagnostics = [Diagnostic(f"cannot be checked: {summary_of(error)}")]
+            hinted = {(hint.line, hint.column) for hint in hints}
             for diagnostic in diagnostics:
                 path = self.file_named(diagnostic.file) or document.path
-                result.setdefault(path, []).append(diagnostic)
+                if path != document.path or (diagnostic.line, diagnostic.column) not in hinted:
+                    result.setdefault(path, []).append(diagnostic)
+            result.setdefault(document.path, []).extend(hints)
         return _Result(
-            document.version, {path: tuple(some) for path, some in result.items()}, frozenset(places)
+            document.version, {path: tuple(some) for path, some in result.items()}, frozenset(looked_at)
         )
 
     def file_named(self, name: str) -> Path | None:

@@ -8,12 +8,13 @@ from pathlib import Path
 
 from lsprotocol import types
 
+from playground.errors import Diagnostic
 from playground.lsp.documents import Document, Documents
 from playground.lsp.rename import references
 from playground.lsp.shader import Shader, Syntax, shader_of, syntax_of, word_at
 from playground.paths import shown
 from playground.shader.reserved_names import GLSL_WORDS, MATCHES, TOWARDS, WIRED
-from playground.shader.syntax.influence import Influence
+from playground.shader.syntax.influence import Influence, unused
 from playground.shader.syntax.nodes import (
     Assign,
     Declarator,
@@ -148,6 +149,25 @@ def _written(syntax: Syntax) -> Iterator[int]:
                 target = target.base
             if isinstance(target, Name):
                 yield tokens[target.first].spelled
+
+
+# ── what nothing names ─────────────────────────────────────────────────────────
+
+
+def unused_names(document: Document, documents: Documents) -> list[Diagnostic]:
+    """Return a hint at each local and parameter of a text that nothing names; none of one half typed."""
+    unit = shader_of(document, documents).unit
+    if not unit.syntax.is_whole:
+        return []
+    hints = []
+    for symbol in unused(unit.syntax.symbols):
+        path, at = unit.origin(unit.syntax.place(symbol))
+        if path == document.path:
+            row = document.text.count("\n", 0, at)
+            column = at - document.line_start(row) + 1
+            message = f"nothing reads {'the parameter ' * (symbol.kind == 'parameter')}'{symbol.name}'"
+            hints.append(Diagnostic(message, shown(path), row + 1, column, "hint"))
+    return hints
 
 
 # ── semantic tokens ────────────────────────────────────────────────────────────

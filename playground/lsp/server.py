@@ -32,6 +32,11 @@ from playground.lsp.shader import library_declared, word_at
 T = TypeVar("T")
 
 _REFUSED = -32803  # the protocol's RequestFailed
+_SEVERITIES = {
+    "error": types.DiagnosticSeverity.Error,
+    "warning": types.DiagnosticSeverity.Warning,
+    "hint": types.DiagnosticSeverity.Hint,
+}
 _TRIGGERS = ["/", '"', ".", "!", "(", "[", "{", "#", "="]
 
 
@@ -44,7 +49,13 @@ class Server(LanguageServer):
         self.loop: asyncio.AbstractEventLoop | None = None  # once the editor has begun
         self.lock = threading.RLock()  # held by who reads texts: what is cached of them is for one thread
         self.checker = Checker(
-            self.documents, self.lock, self._publish, self._tell, software=software, device=device
+            self.documents,
+            self.lock,
+            self._publish,
+            self._tell,
+            self._hints,
+            software=software,
+            device=device,
         )
         self._published: dict[Path, str] = {}  # under which URI a file's diagnostics were sent last
         for name, (answer, options) in _FEATURES.items():
@@ -89,6 +100,9 @@ class Server(LanguageServer):
         message = types.ShowMessageParams(types.MessageType.Warning, sentence)
         self.on_loop(lambda: self.window_show_message(message))
 
+    def _hints(self, document: Document) -> list[Diagnostic]:
+        return highlight.unused_names(document, self.documents)
+
     def _diagnostic(self, diagnostic: Diagnostic, text: Text) -> types.Diagnostic:
         row = min(max(diagnostic.line - 1, 0), len(text.lines) - 1)
         line = text.lines[row]
@@ -101,9 +115,8 @@ class Server(LanguageServer):
         return types.Diagnostic(
             text.range(base + start, base + max(start, end)),
             diagnostic.message,
-            severity=types.DiagnosticSeverity.Error
-            if diagnostic.severity == "error"
-            else types.DiagnosticSeverity.Warning,
+            severity=_SEVERITIES[diagnostic.severity],
+            tags=[types.DiagnosticTag.Unnecessary] if diagnostic.severity == "hint" else None,
             source="playground",
             related_information=self._chain(diagnostic) or None,
         )
