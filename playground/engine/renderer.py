@@ -11,7 +11,7 @@ import logging
 import threading
 import weakref
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -268,15 +268,15 @@ class Renderer:
         self._texture(plan, plan.picture)
         self.record = self.record.counted_as(before)
 
-    def run_apart(self, plan: Plan, ref: Ref) -> FrameRecord:
-        """Run what a texture of a plan needs apart from the frames, and return the record of that.
+    def run_apart(self, plan: Plan, refs: Sequence[Ref]) -> FrameRecord:
+        """Run what some textures of a plan need apart from the frames, and return the record of that.
 
         The last frame, what ran for it and how often all passes ran stay as they were.
         """
         before, runs, keeps = self.record, self.runs.copy(), self.options.keeps
         self.options.keeps = True
         try:
-            self._texture(plan, ref)
+            self._run(plan, refs)
             record = self.record
             if before.plan is not None:
                 self.recall(before.plan)
@@ -327,6 +327,11 @@ class Renderer:
 
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
+        self._run(plan, (ref,))
+        return self.record.results[ref.path].textures[ref.output]
+
+    def _run(self, plan: Plan, refs: Sequence[Ref]) -> None:
+        """Run what some textures need, for one frame."""
         runner, options = self.runner, self.options
         self.plain_forms.report(plan.sketch, plan.lacking)
         self.record = record = FrameRecord(plan, before=self.record.keys)
@@ -345,18 +350,21 @@ class Renderer:
         runner.works.keep(record.keys.computed)
         try:
             with self.borrowed():
-                if not options.keeps:
-                    self._run_once(execution, plan, ref)
-                elif self.disk_caching is not None:
-                    execution.run(self.disk_caching.begin(execution, plan, ref))
-                else:
-                    execution.run(needed(plan.nodes, ref))
+                for ref in refs:
+                    if not options.keeps:
+                        self._run_once(execution, plan, ref)
+                    elif self.disk_caching is not None:
+                        results = execution.results
+                        nodes = self.disk_caching.begin(execution, plan, ref)
+                        execution.results = results | execution.results
+                        execution.run(nodes)
+                    else:
+                        execution.run(needed(plan.nodes, ref))
         finally:
             self.runs.update(record.ran)
         self.cache.end()
         record.results = execution.results
         self.warnings.look(plan)
-        return execution.results[ref.path].textures[ref.output]
 
     def _run_once(self, execution: Execution, plan: Plan, ref: Ref) -> None:
         """Run what a texture needs, and drop what is read no more."""

@@ -61,7 +61,21 @@ class TryLibrary:
     unsaved: tuple[tuple[Path, str], ...] = ()  # texts in place of what files hold, by absolute path
 
 
-Request = TrySketch | TryLibrary
+@dataclass(frozen=True)
+class TryTexts:
+    """Compile a fragment shader as the driver gets it, such as one that traces, and draw a few fragments.
+
+    All that it reads is zero. Driver and sandbox share the cache of shaders on disk: it compiles sooner then.
+    """
+
+    vertex: str
+    fragment: str
+    formats: tuple[str, ...]  # of what it is drawn to, by location: such as rgba16f, and rgba32ui
+    path: str = ""  # of the pass
+    file: str = ""  # absolute path of its text
+
+
+Request = TrySketch | TryLibrary | TryTexts
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,9 @@ from playground.engine.plan import Step
 from playground.engine.planner import smallest_terrain
 from playground.engine.process.worker import Parent, Service
 from playground.engine.programs import compile_library
-from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch
+from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch, TryTexts
 from playground.engine.textures import drain, is_lost
+from playground.engine.trace.tracer import try_texts
 from playground.engine.unfinished import Unfinished
 from playground.errors import ContextError, Diagnostic, PlaygroundError, SandboxCrash, ShaderError
 from playground.shader.source import read_source
@@ -56,6 +57,10 @@ class _Handler:
                 with reading_unsaved(dict(request.unsaved)):
                     source = read_source(Path(request.path), (Path(request.folder),))
                 compile_library(self._ctx, source)
+                return SandboxReport(True)
+            if isinstance(request, TryTexts):
+                self._report(Activity(request.path, request.file))
+                try_texts(self._ctx, request)
                 return SandboxReport(True)
             for driver in request.drivers:
                 if driver == COMPUTE and self._ctx.version_code < 430:

@@ -4,8 +4,9 @@ A traced shader is bound as the step's own is, with its uniforms, textures and s
 driver; loops around it run again up to the iteration. Nothing that is drawn afterwards changes.
 
 A first trace compiles: some 100 ms, and seconds for large texts where all functions are recorded. Another
-texel of the same step and iteration takes 1 to 2 ms. ``Tracer.texts`` is what will be compiled, for the
-sandbox (``TryTexts``) to compile before: driver and sandbox share the cache of shaders on disk.
+texel of the same step and iteration takes 1 to 2 ms. ``Tracer.request`` is what will be compiled, for the
+sandbox to try before: what a user writes may kill the driver or never end, and a text that the sandbox has
+compiled compiles sooner here.
 """
 
 from __future__ import annotations
@@ -26,12 +27,13 @@ from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step
 from playground.engine.programs import Program
 from playground.engine.results import Result, Wired
 from playground.engine.runner import Runner
+from playground.engine.sandbox import TryTexts
 from playground.engine.textures import drain, floats_in, make_framebuffer, release_framebuffer, split_format
 from playground.engine.trace.capture import Capture
 from playground.engine.trace.instrument import ALL, Traced, functions_of, instrument
 from playground.engine.trace.model import MAX_EVENTS, Leaf, Trace, rebuild
 from playground.engine.tuning import Stage
-from playground.errors import ParameterError, SketchError, nearest
+from playground.errors import ParameterError, ShaderError, SketchError, nearest
 from playground.memo import GRAPHS, Memo
 from playground.shader.own_shaders import TRIANGLE
 from playground.shader.source import SourceText
@@ -44,6 +46,8 @@ if TYPE_CHECKING:
     import moderngl
 
 _TRACED = (TexelKernel, PlainFragment, Draw)
+_RECORDING = ("rgba32ui", "rgba32ui")
+"""Formats of the two outputs that record."""
 _MAX_PROGRAMS = 32
 _FIRST_SIDE = 16  # of a target whose number of events nobody knows
 _MAX_SIDE = 512
@@ -122,8 +126,8 @@ class TracedFrames(Protocol):
     ) -> Plan:
         """Make a sketch concrete."""
 
-    def run_apart(self, plan: Plan, ref: Ref) -> FrameRecord:
-        """Run what a texture of a plan needs apart from the frames."""
+    def run_apart(self, plan: Plan, refs: Sequence[Ref]) -> FrameRecord:
+        """Run what some textures of a plan need apart from the frames."""
 
 
 class Tracer:
@@ -199,18 +203,20 @@ class Tracer:
             finally:
                 drain(self._ctx)
 
-    def texts(self, plan: Plan, path: str, function: str | None = None) -> tuple[str, str]:
-        """Return the vertex and the fragment shader that a trace of a step compiles, for the sandbox.
-
-        Raises as ``trace``.
-        """
+    def request(self, plan: Plan, path: str, function: str | None = None) -> TryTexts:
+        """Return what the sandbox has to try before a step of a plan is traced; raises as ``trace``."""
         ref = plan.flat.ref(path, plan.sketch.name)
         step, loops = self._step(plan, ref)
         renderer = self._renderer
         with renderer.supposing(plan), renderer.borrowed():
             run = self._run_of(plan, step, loops, ref, None)
             _, traced = self._instrumented(run, function)
-        return _vertex_of(traced), traced.text
+        formats = (*(output.format for output in step.kernel.outputs), *_RECORDING)
+        return TryTexts(_vertex_of(traced), traced.text, formats, step.path, step.kernel.path)
+
+    def is_compiled(self, request: TryTexts) -> bool:
+        """Return whether a text is compiled here, so that a trace by it takes milliseconds."""
+        return (request.vertex, request.fragment) in self._programs
 
     # ── what is traced ───────────────────────────────────────────────────────
 
@@ -239,7 +245,9 @@ class Tracer:
     ) -> _Run:
         """Return the run of a step in an iteration: that of the last trace where it is the same."""
         renderer = self._renderer
-        record = self._record_of(plan, ref)
+        # Outside of loops its inputs are enough: its texel alone is drawn.
+        sources = [source for _, source in step.inputs if isinstance(source, Ref)]
+        record = self._record_of(plan, [ref] if loops else sources)
         changing = [loop for loop in loops if loop.path in record.keys.changes[id(step)]]
         counts = [loop.repeat for loop in changing]
         has_repeat = step.kernel.repeat != "1"
@@ -300,17 +308,18 @@ class Tracer:
         assert result.target is not None, "what has one sample a pixel draws on its own textures"
         run.result, run.depth = result, result.target.depth
 
-    def _record_of(self, plan: Plan, ref: Ref) -> FrameRecord:
-        """Return the record of a frame of a plan in which all ran that a texture needs."""
+    def _record_of(self, plan: Plan, refs: Sequence[Ref]) -> FrameRecord:
+        """Return the record of a frame of a plan that has the results of some textures."""
         renderer = self._renderer
-        before = renderer.record
-        if before.plan is plan and ref.path in before.results:
-            return before
+        last = renderer.record
+        if last.plan is plan and all(ref.path in last.results for ref in refs):
+            return last
         latest = self._latest
         if latest is not None and latest.plan is plan:
-            if latest.frame == renderer.runner.programs.frame:
+            has_all = all(ref.path in latest.record.results for ref in refs)
+            if has_all and latest.frame == renderer.runner.programs.frame:
                 return latest.record
-        record = renderer.run_apart(plan, ref)
+        record = renderer.run_apart(plan, refs)
         renderer.runner.set_frame(plan)
         return record
 
@@ -422,8 +431,7 @@ class Tracer:
         key = _vertex_of(traced), traced.text
         compiled: _Compiled | None = self._programs.get(key)
         if compiled is None:
-            program = self._ctx.program(vertex_shader=key[0], fragment_shader=key[1])
-            compiled = self._programs.put(key, _Compiled(traced, Program(self._ctx, program)))
+            compiled = self._programs.put(key, _Compiled(traced, _program(self._ctx, *key)))
         return compiled
 
     def _bind(self, program: Program, run: _Run) -> None:
@@ -509,14 +517,42 @@ class Tracer:
         return self._targets[key]
 
 
+def try_texts(ctx: moderngl.Context, request: TryTexts) -> None:
+    """Compile what a trace draws, and draw a few fragments.
+
+    Raises ``ShaderError`` where the driver refuses it.
+    """
+    program = _program(ctx, request.vertex, request.fragment)
+    target = _Target(ctx, request.formats[: -len(_RECORDING)], 2)
+    try:
+        target.framebuffer.use()
+        program.fill()
+        ctx.finish()
+    finally:
+        target.release()
+        program.release()
+
+
+def _program(ctx: moderngl.Context, vertex: str, fragment: str) -> Program:
+    import moderngl
+
+    try:
+        return Program(ctx, ctx.program(vertex_shader=vertex, fragment_shader=fragment))
+    except moderngl.Error as error:
+        log = " ".join(str(error).split())
+        raise ShaderError(f"the driver refuses the text that records this shader: {log}") from None
+    finally:
+        drain(ctx)
+
+
 class _Target:
     """What a traced shader draws to: its own outputs, and two of the recording's."""
 
     def __init__(self, ctx: moderngl.Context, formats: tuple[str, ...], side: int) -> None:
         self.side = side
         self.formats = [split_format(form) for form in formats]
-        self.textures = [ctx.texture((side, side), parts, dtype=dtype) for parts, dtype in self.formats]
-        self.textures += [ctx.texture((side, side), 4, dtype="u4") for _ in range(2)]
+        kinds = [*self.formats, *((4, "u4") for _ in _RECORDING)]
+        self.textures = [ctx.texture((side, side), parts, dtype=dtype) for parts, dtype in kinds]
         self.framebuffer = make_framebuffer(ctx, self.textures)
 
     def read(self, quad: tuple[int, int] | None) -> tuple[NDArray[Any], NDArray[Any], list[bytes]]:
