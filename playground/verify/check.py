@@ -22,7 +22,7 @@ from tempfile import TemporaryDirectory
 from playground.allowed_files import TEXTS, is_elevation, is_variant, named_root, root_of, unsaved_texts
 from playground.engine.on_arrays import free_name
 from playground.engine.plan import PlanRequest, located_at
-from playground.engine.plan_warnings import source_warnings
+from playground.engine.plan_warnings import own_kernels, source_warnings
 from playground.engine.planner import make_plan
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.engine.sketch_warnings import kernel_warnings, shadowed_by_files, warnings_of_kernel
@@ -36,6 +36,7 @@ from playground.errors import (
 )
 from playground.files import irregularity
 from playground.paths import GLSL, SKETCHES, shown
+from playground.shader.common_glsl import desktop_only
 from playground.shader.dialect import dialects
 from playground.shader.source import read_text
 from playground.shader.wrap import COMPUTE, FRAGMENT
@@ -197,6 +198,7 @@ class _Check:
         for _, kernel_inside in kernels_of(kernel) if kernel is not None else ():
             if not Path(kernel_inside.path).is_relative_to(GLSL) or self.path.is_relative_to(GLSL):
                 self.warnings |= dict.fromkeys(warnings_of_kernel(kernel_inside))
+                self.warnings |= dict.fromkeys(desktop_only(kernel_inside))
         if kernel is None:
             self.attempt(TryLibrary(str(self.path), str(self.root), tuple(unsaved_texts().items())))
         elif isinstance(kernel, Graph) or isinstance(kernel, PlainShader):
@@ -248,6 +250,7 @@ class _Check:
         # The child draws small; what is wrong at the sketch's own size shows in the plan.
         plan = make_plan(sketch, PlanRequest(frame_size=_FRAME))
         self.warnings |= dict.fromkeys([*kernel_warnings(sketch.graph), *source_warnings(plan)])
+        self.warnings |= dict.fromkeys(w for k in own_kernels(sketch.graph) for w in desktop_only(k))
         self.warnings |= dict.fromkeys(shadow.warning for shadow in shadowed_by_files(sketch))
         for preset in sketch.presets:
             make_plan(sketch.with_preset(preset.name), PlanRequest(frame_size=_FRAME))

@@ -258,6 +258,17 @@ def test_a_line_directive_moves_no_error_and_is_a_warning(folder, sandbox, any_e
 # Places that a message lacks
 
 
+def test_what_only_desktops_take_is_a_warning_at_its_line(folder, sandbox):
+    head = '#pragma kernel(output = "a:r32f")\nuniform float steep = 2;  //! slider(0, 4)\n'
+    body = "float kernel(ivec2 texel) {\n    return pow(steep, 2)\n    ;\n}\n"
+    report = check_file(folder.write("loose.glsl", head + body), sandbox)
+    assert report.ok and [placed(warning) for warning in report.warnings] == [("loose.glsl", 4)]
+    assert "`return pow(steep, 2.0)`" in report.warnings[0].message
+    toy = "void mainImage(out vec4 c, vec2 p) {\n    c = fma(p.xyxy, vec4(1), vec4(0)) * 2;\n}\n"
+    report = check_file(folder.write("toy.frag", toy), sandbox)
+    assert [placed(w) for w in report.warnings if "fma()" in w.message] == [("toy.frag", 2)]
+
+
 def test_recursion_is_reported_at_function_definition(folder, any_engine):
     text = (
         "int f(ivec2 n) { return n.x; }\n"

@@ -8,10 +8,10 @@ from typing import Any
 
 from playground.engine.meshes import mesh_parameters
 from playground.engine.textures import split_format
-from playground.paths import GLSL
-from playground.publish.web.common_glsl import in_common_glsl, lacking
+from playground.errors import ShaderError
 from playground.publish.web.formulas import accepted_runs, formula
 from playground.publish.web.texts import Texts
+from playground.shader.common_glsl import desktop_only, in_common_glsl, lacking
 from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.kernel import options_of
 from playground.shader.parameter import Sampling
@@ -106,9 +106,8 @@ def _recipes(kernel: Kernel) -> dict[str, Recipe]:
     _, recipes = recipes_of(kernel, FRAGMENT)
     if isinstance(kernel, PlainFragment):
         return {name: _in_common_glsl(recipe) for name, recipe in recipes.items()}
-    if any(not Path(file).is_relative_to(GLSL) for file in kernel.source.files):
-        for recipe in recipes.values():
-            _check_common_glsl(recipe)
+    for diagnostic in desktop_only(kernel):
+        raise ShaderError(diagnostics=[replace(diagnostic, severity="error")])
     return recipes
 
 
@@ -125,19 +124,6 @@ def _in_common_glsl(recipe: Recipe) -> Recipe:
     source = recipe.source.with_codes([line.code if was == now else now for line, was, now in own])
     head = (StagePart("\n".join(lines[:begin])),) if begin else ()
     return replace(recipe, source=source, before=head, after="\n".join(lines[end:]))
-
-
-def _check_common_glsl(recipe: Recipe) -> None:
-    """Raise ``ShaderError`` at the first line that only desktop GLSL has."""
-    text, first = recipe.make()
-    common = zip(text.split("\n"), in_common_glsl(text).split("\n"), strict=True)
-    for number, (was, now) in enumerate(common, 1):
-        index = number - first
-        if was != now and first and 0 <= index < len(recipe.source.lines):
-            line = recipe.source.lines[index]
-            if not Path(line.file).is_relative_to(GLSL):
-                message = f"web pages compile GLSL ES 3.00, which wants this written as `{now.strip()}`"
-                raise line.error(message)
 
 
 def stage_data(recipe: Recipe, file: str = "") -> dict[str, Any]:

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from playground.errors import ShaderError
-from playground.publish.web.common_glsl import in_common_glsl, lacking
 from playground.publish.web.page_data import page_data
+from playground.shader.common_glsl import in_common_glsl, lacking
 from playground.shader.wrap import FRAGMENT, wrap
 
 from ...loading import load

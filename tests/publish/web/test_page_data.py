@@ -15,11 +15,11 @@ from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan, PlanRequest
 from playground.engine.planner import make_plan
 from playground.paths import GLSL
-from playground.publish.web.common_glsl import in_common_glsl
 from playground.publish.web.page import page_text
 from playground.publish.web.page_data import page_data
 from playground.publish.web.plan import KINDS
 from playground.shader import expressions
+from playground.shader.common_glsl import in_common_glsl
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import PlainFragment, Sketch
 

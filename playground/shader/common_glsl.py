@@ -1,7 +1,8 @@
 """Rewrite desktop GLSL in the subset that GLSL ES 3.00 has as well, and name what has no other form there.
 
-A page compiles GLSL ES 3.00. Kernels are written in the common subset; other tools' shaders, many of which
-are written for desktops, are rewritten when they are exported. Each line stays where it is:
+A page compiles GLSL ES 3.00. Kernels are written in the common subset, and ``desktop_only`` says where one is
+not; other tools' shaders, many of which are written for desktops, are rewritten when they are exported. Each
+line stays where it is:
 
 * blocks of varyings become varyings; ``sampler1D`` becomes a row of a ``sampler2D``; functions named as
   built-in ones get names of their own; globals computed from others get their values in ``main``;
@@ -15,8 +16,14 @@ want the same there. What is not GLSL stays.
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterator
 from functools import cache
+from itertools import islice
+from pathlib import Path
 
+from playground.errors import Diagnostic
+from playground.paths import GLSL
+from playground.shader.kernel import ComputeVariant, CpuSource, Kernel, PlainCompute, PlainFragment
 from playground.shader.preprocessor import WEBGL_2
 from playground.shader.reserved_names import BUILT_IN_FUNCTIONS
 from playground.shader.syntax.nodes import (
@@ -47,6 +54,7 @@ from playground.shader.syntax.types import (
     matrix,
     vector,
 )
+from playground.shader.wrap import FRAGMENT, recipes_of
 
 _MISSING_FUNCTIONS = frozenset(
     """
@@ -107,6 +115,27 @@ _ROW_FUNCTIONS = {
     "texelFetch": "k_lineFetch",
     "textureSize": "k_lineSize",
 }
+
+
+def desktop_only(kernel: Kernel) -> Iterator[Diagnostic]:
+    """Yield a warning for each line of a kernel that no web page takes as it is; shipped files have none.
+
+    A shader of another tool is rewritten when it is exported: of one only what has no other form counts.
+    """
+    is_shipped = all(Path(file).is_relative_to(GLSL) for file in kernel.source.files)
+    if is_shipped or isinstance(kernel, CpuSource | ComputeVariant | PlainCompute):
+        return
+    if name := lacking(kernel.source.code):
+        line = kernel.source.line_naming(name.removesuffix("()")) or kernel.source.lines[0]
+        yield line.diagnostic(f"this names {name}, which the GLSL of web pages has not", severity="warning")
+    for recipe in () if isinstance(kernel, PlainFragment) else recipes_of(kernel, FRAGMENT)[1].values():
+        text, first = recipe.make()
+        lines = zip(text.split("\n"), in_common_glsl(text).split("\n"), strict=True)
+        own = zip(recipe.source.lines, islice(lines, first - 1, None), strict=False) if first else ()
+        for line, (was, now) in own:
+            if was != now and not Path(line.file).is_relative_to(GLSL):
+                message = f"web pages compile GLSL ES 3.00, which wants this written as `{now.strip()}`"
+                yield line.diagnostic(message, severity="warning")
 
 
 def lacking(code: str) -> str:
