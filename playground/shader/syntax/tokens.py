@@ -8,15 +8,17 @@ from itertools import zip_longest
 from typing import NamedTuple
 
 _TOKEN = re.compile(
-    r"(?P<word>[A-Za-z_]\w*)"
+    r"[\s\\]*(?:(?P<word>[A-Za-z_]\w*)"
     r"|(?P<number>(?:0[xX][0-9a-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\w*)"
     r"|(?P<comment>//(?:[^\n\\]|\\(?:\r?\n|.)?)*|/\*.*?(?:\*/|\Z))"
     r"|(?P<mark><<=|>>=|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||\^\^|\#\#|[-+*/%&|^]=|[-+*/%&|^~!<>=?:;,.(){}\[\]])"
     r"|(?P<directive>\#(?:\"[^\"\n]*\"|[^\n\\/]|\\(?:\r?\n|.)?|/(?![/*])|/\*.*?(?:\*/|\Z))*)"
     r'|(?P<string>"[^"\n]*")'
-    r"|(?P<other>[^\s\\])",
+    r"|(?P<other>[^\s\\]))",
     re.DOTALL,
 )
+_KINDS = ("", *_TOKEN.groupindex)
+_COMMENT = _KINDS.index("comment")
 _NOTHING: frozenset[str] = frozenset()
 
 
@@ -44,13 +46,13 @@ def tokenize(text: str) -> tuple[list[Token], list[Comment]]:
     tokens: list[Token] = []
     comments: list[Comment] = []
     new, add = tuple.__new__, tokens.append
-    for match in _TOKEN.finditer(text):
-        kind = match.lastgroup
-        start, end = match.span()
-        if kind == "comment":
-            comments.append(Comment(match.group(), start, end))
+    for match in _TOKEN.finditer(text, 0, len(text.rstrip())):
+        kind = match.lastindex or 0
+        start, end = match.span(kind)
+        if kind == _COMMENT:
+            comments.append(Comment(text[start:end], start, end))
         else:
-            add(new(Token, (match.group(), kind, start, end, start, _NOTHING)))
+            add(new(Token, (text[start:end], _KINDS[kind], start, end, start, _NOTHING)))
     return tokens, comments
 
 
