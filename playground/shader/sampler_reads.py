@@ -1,8 +1,8 @@
 """Read what a text does with its samplers: which inputs it fetches texel by texel, and which texels of them.
 
-A function may be handed samplers: a parameter means what every call hands it, up the chain of calls. Of a
-text that cannot be parsed, or whose conditions depend on the driver, nothing is returned. What is fetched
-from and not declared is a uniform that stands around the text.
+A function may be handed samplers: a parameter means what every call hands it, up the chain of calls. All
+branches of conditions count, since stages and drivers differ; of a text that is no GLSL with all of them,
+nothing is returned. What is fetched from and not declared is a uniform that stands around the text.
 """
 
 from __future__ import annotations
@@ -25,9 +25,14 @@ from playground.shader.syntax.nodes import (
     Parenthesized,
     walk,
 )
-from playground.shader.syntax.symbols import CallSite, Symbol, Symbols, has_same_signature, symbols_of
+from playground.shader.syntax.parser import parse
+from playground.shader.syntax.symbols import CallSite, Symbol, Symbols, has_same_signature, resolve
 
 _MAYBE_FIXED = re.compile(r"\bivec2\s*\(\s*\d")
+_MARK = re.compile(r"^[ \t]*#(?:[^\n\\]|\\\n|\\.)*|[{};]", re.MULTILINE)  # ends of parts; directives whole
+_DEFINE = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)(?:[^\n\\]|\\\n|\\.)*", re.MULTILINE)
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_UNIFORM = re.compile(r"\buniform\b[^;]*?\bsampler2D\s+([A-Za-z_]\w*)")
 _COORDINATE = re.compile(r"0|[1-9]\d{0,3}")
 
 
@@ -125,11 +130,33 @@ class _Reads:
 
 @TEXTS.cached()
 def _reads(code: str) -> _Reads:
-    symbols = symbols_of(code)
+    symbols = resolve(parse(_with_samplers(code), all_branches=True))
     preprocessed = symbols.tree.preprocessed
-    if symbols.tree.errors or preprocessed.depends_on_driver or preprocessed.is_truncated:
+    if symbols.tree.errors or preprocessed.inactive or preprocessed.is_truncated:
         return _Reads()
     return _Reader(symbols).reads()
+
+
+def _with_samplers(code: str) -> str:
+    """Return a text with blanks in place of the functions that name no sampler: a third of it is parsed."""
+    directives = [(set(_WORD.findall(match[0])), match[1]) for match in _DEFINE.finditer(code)]
+    words = {"sampler2D", "texelFetch", *_UNIFORM.findall(code)}
+    while new := {name for body, name in directives if name not in words and body & words}:
+        words |= new
+    names_one = re.compile(rf"\b(?:{'|'.join(words)})\b").search
+    parts, start, depth, opens = list[str](), 0, 0, -1
+    for match in _MARK.finditer(code):
+        mark = match[0]
+        depth += (mark == "{") - (mark == "}")
+        if mark == "{" and depth == 1:
+            opens = match.start()
+        if depth == 0 and mark != "{":
+            part = code[start : match.end()]
+            if mark == "}" and code[:opens].endswith((")", ") ", ")\n")) and not names_one(part):
+                part = "\n".join([" " * len(line) for line in part.split("\n")])
+            parts.append(part)
+            start = match.end()
+    return "".join([*parts, code[start:]])
 
 
 class _Reader:

@@ -118,13 +118,10 @@ def resolve(tree: Tree) -> Symbols:
 
 
 @TEXTS.cached(weight=256)  # nodes and tokens are many
-def symbols_of(text: str, unknown: bool = False) -> Symbols:
-    """Return the symbols of a text whose conditions the text itself decides; treat them as constant.
-
-    ``unknown``: whether what only the driver knows is defined.
-    """
+def symbols_of(text: str, *, all_branches: bool = False, unknown: bool = False) -> Symbols:
+    """Return the symbols of a text; treat them as constant. ``parse`` has the arguments."""
     with collector_paused():
-        return resolve(parse(text, unknown=unknown))
+        return resolve(parse(text, all_branches=all_branches, unknown=unknown))
 
 
 def readings(text: str) -> tuple[Symbols, ...]:

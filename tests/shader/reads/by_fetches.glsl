@@ -103,7 +103,7 @@ SQUARE(vec2)
 float two(sampler2D which, vec2 p) { return textureLod(which, p, 0.0).r; }
 float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t)); }
 
-//// by a function behind a head that is written twice: moon
+//// by a function behind a head that is written twice: 
 #if 1
 float one(float x) {
 #else
@@ -117,18 +117,9 @@ float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t)); }
 float two(float w[(2)], sampler2D which) { return textureLod(which, vec2(w[0]), 0.0).r; }
 float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(float[2](0.1, 0.2), sun); }
 
-//// by a branch that is off: moon sun
+//// by a branch of another stage: moon
 float kernel(ivec2 t) {
-#if 0
-    return textureLod(sun, vec2(t), 0.0).r;
-#else
-    return ■texelFetch(sun, t, 0).r;
-#endif
-}
-
-//// by a branch that depends on the driver: 
-float kernel(ivec2 t) {
-#ifdef GL_EXT_gpu_shader4
+#ifdef COMPUTE_STAGE
     return textureLod(sun, vec2(t), 0.0).r;
 #else
     return texelFetch(sun, t, 0).r;
