@@ -7,7 +7,7 @@ readers of the files noted. ``engine.sketch_warnings`` has those that only a che
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 from playground.errors import Diagnostic
@@ -15,7 +15,30 @@ from playground.paths import GLSL
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError
 from playground.shader.header import unfed_samplers
+from playground.shader.reserved_names import GIVEN
 from playground.shader.source import SourceText
+from playground.shader.syntax.nodes import (
+    Assign,
+    Binary,
+    Call,
+    Case,
+    Conditional,
+    Declarator,
+    Function,
+    Index,
+    Jump,
+    Literal,
+    Node,
+    Parameter,
+    Parenthesized,
+    Switch,
+    Type,
+    Unary,
+    children,
+    walk,
+)
+from playground.shader.syntax.symbols import Symbols, symbols_of
+from playground.shader.syntax.types import ExpressionTypes, components
 from playground.sketch.model import ForeignShader, Graph, Kernel, PlainShader, Sketch
 
 
@@ -37,19 +60,14 @@ def unheeded(kernel: Kernel) -> tuple[Diagnostic, ...]:
 # ── divisions of whole numbers ───────────────────────────────────────────────
 
 _MAYBE_DIVIDED = re.compile(r"[\d)]\s*/\s*[\d(]")
-_TOKEN = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\w*|[A-Za-z_]\w*|&&|\|\||[<>=!]=|\S")
-_WHOLE = re.compile(r"\d+")
-_MAX_LITERALS = 64  # tokens of a product of literals
-_WHOLE_TYPE = re.compile(r"u?int|[iu]vec[234]")
-_DECLARED_WHOLE = re.compile(r"\b(?:u?int|[iu]vec[234])\b(?!\s*\()([^;(){}]*)")
-_TAKES = re.compile(r"\b[A-Za-z_]\w* ([A-Za-z_]\w*) \( ([^()]*\b(?:u?int|[iu]vec[234])\b[^()]*) \)")
-_WHOLE_GIVEN = frozenset("size iteration iterations until stage texel gl_InstanceID gl_VertexID".split())
+_MAX_TOKENS = 64  # of a division of literals
 _TAKES_WHOLE = frozenset(
     "texelFetch texelFetchOffset textureSize imageLoad imageStore bitfieldExtract".split()
 )
 _GENERIC = frozenset("abs clamp max min sign".split())  # whole if their arguments are
-_NO_CALLS = frozenset("if while for return".split())
-_ENDS = frozenset(("(", ")", ",", ";", "{", "}", "?", ":", "&&", "||", "=", "return", "[", "]"))
+_ARITHMETIC = frozenset("+ - * / == != < > <= >=".split())
+_WHOLE_OPERATORS = frozenset("% << >> & | ^".split())
+_GIVEN_TYPES = {**{name: kind for name, (kind, _) in GIVEN.items()}, "texel": "ivec2"}
 
 
 def whole_divisions(source: SourceText) -> list[Diagnostic]:
@@ -60,182 +78,99 @@ def whole_divisions(source: SourceText) -> list[Diagnostic]:
     """
     if not _MAYBE_DIVIDED.search(source.code):
         return []
-    diagnostics: list[Diagnostic] = []
-    tokens: list[tuple[str, int, int]] = []  # text, index of its line, column
-    directive = False
-    for index, line in enumerate(source.lines):
-        directive = line.code.lstrip().startswith("#") or (
-            directive and source.lines[index - 1].code.endswith("\\")
-        )
-        if not directive:
-            tokens += [(m[0], index, m.start() + 1) for m in _TOKEN.finditer(line.code)]
-    texts = [text for text, _, _ in tokens]
-    whole = set(_WHOLE_GIVEN)
-    for declared in _DECLARED_WHOLE.finditer(" ".join(texts)):
-        whole |= set(re.findall(r"(?:^|,)\s*([A-Za-z_]\w*)", declared[1]))
-    whole |= {function[1] for function in _TAKES.finditer(" ".join(texts))}
-    for at, text in enumerate(texts):
-        if text != "/":
-            continue
-        start, left = _whole_before(texts, at)
-        after, right = _whole_after(texts, at + 1)
-        if left is None or not right or left % right == 0 or _is_whole(texts, start, after, whole):
-            continue
-        line, column = source.lines[tokens[start][1]], tokens[start][2]
-        last, end = tokens[after - 1][1], tokens[after - 1][2] - 1 + len(texts[after - 1])
-        written = line.code[column - 1 : end] if source.lines[last] is line else f"{left}/{right}"
-        message = f"{written} divides whole numbers, which gives {left // right}; write {left}.0/{right}.0"
-        diagnostics.append(line.diagnostic(message, column, "warning"))
-    return diagnostics
+    return _Divisions(symbols_of(source.code, all_branches=True)).warnings(source)
 
 
-def _whole_before(texts: Sequence[str], at: int) -> tuple[int, int | None]:
-    """Return where the product of whole literals before a place begins, and its value if it is one."""
-    start = at
-    while 0 < start and at - start <= _MAX_LITERALS:
-        begin = _group_before(texts, start)
-        if begin == start or (begin > 0 and texts[begin] == "(" and re.match(r"\w", texts[begin - 1])):
-            return at, None
-        start = begin
-        if start == 0 or texts[start - 1] not in ("*", "/", "%"):
-            return start, _evaluated(texts[start:at])
-        start -= 1
-    return at, None
+class _Divisions:
+    """The divisions of a text."""
 
+    def __init__(self, symbols: Symbols) -> None:
+        self.symbols = symbols
+        self.tree = symbols.tree
+        self.types = ExpressionTypes(symbols, _GIVEN_TYPES)
+        self.parents: dict[Node, tuple[Node, Function | None]] = {}  # with the function around
+        for declaration in self.tree.declarations:
+            function = declaration if isinstance(declaration, Function) else None
+            for node in walk(declaration):
+                self.parents |= {part: (node, function) for part in children(node)}
 
-def _group_before(texts: Sequence[str], end: int) -> int:
-    """Return where the literal or bracket of literals begins that ends at a place; else the place."""
-    if _WHOLE.fullmatch(texts[end - 1]):
-        return end - 1
-    depth = 0
-    for at in range(end - 1, max(end - _MAX_LITERALS, 0) - 1, -1):
-        depth += (texts[at] == ")") - (texts[at] == "(")
-        if depth == 0:
-            return at if texts[at] == "(" else end
-        if not re.fullmatch(r"[()+*/%-]|\d+", texts[at]):
-            break
-    return end
+    def warnings(self, source: SourceText) -> list[Diagnostic]:
+        diagnostics: list[Diagnostic] = []
+        for node in self.parents:
+            if not isinstance(node, Binary) or node.operator != "/":
+                continue
+            left, right = self._literal(node.left), self._literal(node.right)
+            if left is None or not right or left % right == 0 or self._is_meant(node):
+                continue
+            (number, column), end = map(self.tree.place, self.tree.span(node))
+            line = source.lines[number]
+            written = line.code[column : end[1]] if end[0] == number else f"{left}/{right}"
+            message = (
+                f"{written} divides whole numbers, which gives {left // right}; write {left}.0/{right}.0"
+            )
+            diagnostics.append(line.diagnostic(message, column + 1, "warning"))
+        return diagnostics
 
+    def _literal(self, node: Node) -> int | None:
+        """Return the value of whole literals, brackets and operators, as GLSL has it of positive numbers."""
+        tokens = self.tree.tokens[node.first : node.last]
+        if len(tokens) > _MAX_TOKENS or any(token.macros for token in tokens):
+            return None
+        if not all(token.text.isdecimal() or token.text in "()+*/%-" for token in tokens):
+            return None
+        text = " ".join("//" if token.text == "/" else token.text for token in tokens)
+        try:
+            return int(expressions.evaluate(text, {}))
+        except ExpressionError:
+            return None
 
-def _whole_after(texts: Sequence[str], start: int) -> tuple[int, int | None]:
-    """Return where the literal, or the bracket of literals, ends that begins at a place, and its value."""
-    depth = 0
-    for at in range(start, min(start + _MAX_LITERALS, len(texts))):
-        if not re.fullmatch(r"[()+*/%-]|\d+", texts[at]):
-            break
-        depth += (texts[at] == "(") - (texts[at] == ")")
-        if depth == 0:
-            return at + 1, _evaluated(texts[start : at + 1])
-    return start, None
+    def _is_meant(self, node: Node) -> bool:
+        """Return whether a division stands where a whole number is meant."""
+        while node in self.parents:
+            part, (node, function) = node, self.parents[node]
+            match node:
+                case Binary() if node.operator in _ARITHMETIC:
+                    others = [node.left if part is node.right else node.right]
+                case Conditional():
+                    others = [one for one in (node.yes, node.no) if one is not part]
+                case Call() if node.name in _GENERIC and not self.symbols.callees.get(node):
+                    others = [one for one in node.arguments if one is not part]
+                case Call():
+                    return self._takes_whole(node, part)
+                case Assign():
+                    return self._is_whole(self.types.of(node.target)[0])
+                case Declarator():
+                    symbol = self.symbols.symbol_at.get(node.at)
+                    return part is not node.value or (symbol is not None and self._is_whole(symbol.type))
+                case Jump():
+                    return function is not None and self._is_whole(function.type.name)
+                case Parenthesized() | Unary():
+                    continue
+                case Binary():
+                    return node.operator in _WHOLE_OPERATORS
+                case _:  # an index, a size, a label
+                    return isinstance(node, Index | Switch | Case | Type | Parameter)
+            named = [one for one in others if not isinstance(one, Literal) or not one.text.isdecimal()]
+            named = [one for one in named if self._literal(one) is None]
+            if named:
+                return all(self._is_whole(self.types.of(one)[0]) for one in named)
+        return False
 
-
-def _evaluated(texts: Sequence[str]) -> int | None:
-    """Return the value of literals, brackets and operators, as GLSL has it of positive numbers; else None."""
-    try:
-        return int(expressions.evaluate(" ".join("//" if text == "/" else text for text in texts), {}))
-    except ExpressionError:
-        return None
-
-
-def _is_whole(texts: Sequence[str], start: int, end: int, whole: set[str]) -> bool:
-    """Return whether a division stands where a whole number is meant."""
-    if _is_among_whole(texts, start, end, whole):
-        return True
-    before, depth, calls = start, 0, list[str]()
-    while before > 0 and texts[before - 1] not in (";", "{", "}"):
-        before -= 1
-        depth += (texts[before] in (")", "]")) - (texts[before] in ("(", "["))
-        if depth < 0:  # a bracket around it
-            depth = 0
-            if texts[before] == "[":
-                return True
-            calls.append(texts[before - 1] if before else "")
-    # The innermost call decides; what is no call, as a bracket or if, leaves it to what is around.
-    for call in calls:
-        if _WHOLE_TYPE.fullmatch(call) or call in _TAKES_WHOLE or call == "switch":
+    def _takes_whole(self, call: Call, argument: Node) -> bool:
+        """Return whether a call takes a whole number as an argument."""
+        index = next((i for i, one in enumerate(call.arguments) if one is argument), -1)
+        if index < 0:  # the size of a constructor's array
             return True
-        if re.fullmatch(r"[A-Za-z_]\w*", call) and call not in _NO_CALLS:
-            return call in whole
-    head = [text for text in texts[before:start] if text not in ("const", "highp", "mediump", "lowp", "(")]
-    while head and head[0] in ("if", "else", "for", "while"):
-        head.pop(0)
-    if head and (_WHOLE_TYPE.fullmatch(head[0]) or head[0] == "case"):
-        return True
-    if "=" in head and _is_set_whole(" ".join(head[: head.index("=")]), whole):
-        return True
-    if head[:1] == ["return"]:
-        return _returns_whole(texts, before)
-    return False
+        callees = self.symbols.callees.get(call, ())
+        chosen = self.types.overload(call)
+        for callee in (chosen,) if chosen is not None else callees:
+            if isinstance(callee.node, Function) and index < len(callee.node.parameters):
+                return self._is_whole(callee.node.parameters[index].type.name)
+        return not callees and (call.name in _TAKES_WHOLE or self._is_whole(call.name))
 
-
-def _is_among_whole(texts: Sequence[str], start: int, end: int, whole: set[str]) -> bool:
-    """Return whether only whole numbers join a division, as in ``n + 7/2`` or ``max(n, 7/2)``."""
-    while True:
-        left, right = _reach(texts, start, -1), _reach(texts, end, 1)
-        names = _names_read(texts, [*range(left, start), *range(end, right)])
-        opens, closes = left - 1, right
-        if not names and (generic := _opening_of_generic(texts, left)) >= 0:
-            opens = generic
-            while closes < len(texts) and texts[closes] == ",":
-                closes = _reach(texts, closes + 1, 1)
-            names = _names_read(texts, [*range(opens + 1, start), *range(end, closes)])
-            left = opens - 1
-        if names:
-            return whole >= names
-        is_bracket = opens >= 0 and texts[opens] == "(" and texts[closes : closes + 1] == [")"]
-        if not is_bracket or (left == opens + 1 and re.match(r"\w", texts[opens - 1])):
-            return False
-        start, end = min(left, opens), closes + 1
-
-
-def _reach(texts: Sequence[str], at: int, step: int) -> int:
-    """Return how far the operands beside a place reach, with the brackets among them."""
-    opens, closes = (("(", "["), (")", "]")) if step > 0 else ((")", "]"), ("(", "["))
-    ends = _ENDS.difference(opens)
-    depth, index = 0, at if step > 0 else at - 1
-    while 0 <= index < len(texts):
-        text = texts[index]
-        if text in ends and depth == 0:
-            break
-        depth += (text in opens) - (text in closes)
-        index += step
-    return index if step > 0 else index + 1
-
-
-def _opening_of_generic(texts: Sequence[str], at: int) -> int:
-    """Return the index of the bracket around an argument of ``max`` or its like; -1 where none is there."""
-    while at > 0 and texts[at - 1] == ",":
-        at = _reach(texts, at - 1, -1)
-    return at - 1 if at > 1 and texts[at - 1] == "(" and texts[at - 2] in _GENERIC else -1
-
-
-def _names_read(texts: Sequence[str], places: Sequence[int]) -> set[str]:
-    """Return the names and the numbers with a point at some places; no members, no ``max`` or its like."""
-    return {
-        texts[k]
-        for k in places
-        if re.match(r"[A-Za-z_]|\.\d|\d+\.", texts[k]) and texts[k - 1] != "." and texts[k] not in _GENERIC
-    }
-
-
-def _is_set_whole(target: str, whole: set[str]) -> bool:
-    """Return whether what is set, as ``n``, ``n[k]``, ``v.x`` or ``s.count``, is a whole number."""
-    bare = re.sub(r"\[[^\]]*\]", "", target).rpartition(")")[2]
-    names = bare.strip("+-*/%&|^<> ").split(" . ")
-    return names[0] in whole or (len(names) > 1 and names[-1] in whole)
-
-
-def _returns_whole(texts: Sequence[str], at: int) -> bool:
-    """Return whether the function around a place returns a whole number."""
-    depth = 0
-    for k in range(at - 1, -1, -1):
-        depth += (texts[k] == "}") - (texts[k] == "{")
-        if depth == -1 and texts[k] == "{" and k and texts[k - 1] == ")":
-            opened = next((i for i in range(k - 1, -1, -1) if texts[i : i + 1] == ["("]), 0)
-            if opened > 1 and re.match(r"[A-Za-z_]", texts[opened - 2]):
-                return bool(_WHOLE_TYPE.fullmatch(texts[opened - 2]))
-            depth = 0  # of an if or a loop
-    return False
+    @staticmethod
+    def _is_whole(of_type: str) -> bool:
+        return components(of_type)[0] in ("int", "uint")
 
 
 def warnings_of_sketch(sketch: Sketch) -> tuple[Diagnostic, ...]:
