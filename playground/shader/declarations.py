@@ -13,6 +13,7 @@ from playground.memo import TEXTS
 from playground.shader.syntax.nodes import Declaration, Declarator, InterfaceBlock, Type
 from playground.shader.syntax.parser import Tree
 from playground.shader.syntax.symbols import Symbol, readings
+from playground.shader.syntax.types import components
 
 _KINDS = {
     "function": "called",
@@ -21,11 +22,7 @@ _KINDS = {
     "local": "local",
     "parameter": "local",
 }
-_VECTORS = {"vec2": 2, "vec3": 3, "vec4": 4}
 _WAYS = frozenset({"flat", "smooth", "noperspective", "centroid", "sample", "invariant"})
-_NUMBERS = frozenset(
-    ["float", "double", "int", "uint", "bool", *(f"{k}vec{n}" for k in ("", *"iubd") for n in (2, 3, 4))]
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +61,7 @@ def takes(kind: str, other: str) -> bool:
 def _family(kind: str) -> str:
     """Return what a tool gives that declares a uniform of a type: others of the family take it, too."""
     name = kind.partition("[")[0]
-    if name in _NUMBERS:
+    if components(name)[1]:
         return "numbers"
     if name in ("mat3", "mat4"):
         return "matrix"
@@ -167,10 +164,10 @@ def _set(target: str, name: str, kind: str, array: str) -> str:
 
 def _value(name: str, kind: str) -> str:
     """Return an output's value by its name: coordinates 0..1, a position -1..1, a normal, white, else 0."""
-    count = _VECTORS.get(kind)
+    scalar, count = components(kind)
     if kind.startswith("mat"):
         return f"{kind}(1.0)"
-    if count is None:
+    if scalar != "float" or count == 1:
         return f"{kind}({'1' if 'color' in name or 'colour' in name else '0'})"
     if "color" in name or "colour" in name:
         return f"{kind}(1.0)"

@@ -30,6 +30,7 @@ from playground.shader.syntax.nodes import (
 from playground.shader.syntax.preprocessor import value_of
 from playground.shader.syntax.symbols import Symbols, readings
 from playground.shader.syntax.tokens import with_edits
+from playground.shader.syntax.types import is_built_in
 from playground.shader.wrap import Wrapped
 
 _MAX_WRITTEN = 64  # elements of an array that are written out; more are set by a loop
@@ -38,15 +39,6 @@ _MAX_MEMBERS = 256  # of a struct, those of its members too
 _MAX_DEPTH = 16  # of constants that name constants
 _OUTSIDE = frozenset("const in inout uniform varying attribute buffer shared".split())
 _SCALARS = {"float": "0.0", "int": "0", "uint": "0u", "bool": "false"}
-_BUILT_IN = frozenset(
-    [*_SCALARS, "double", *(f"{k}vec{n}" for k in ("", *"biud") for n in (2, 3, 4))]
-    + [
-        f"{k}mat{n}"
-        for k in ("", "d")
-        for n in (2, 3, 4, *(f"{a}x{b}" for a in (2, 3, 4) for b in (2, 3, 4)))
-    ]
-)
-"""Types with a value that GLSL has by itself; samplers and images have none."""
 _INDEX = "k_z"
 
 _Arrays = Sequence[Node | None]
@@ -188,7 +180,7 @@ class _Zeros:
             value = self._value(of_type, inner, most // count)
             brackets = "".join(f"[{self._text(size)}]" for size in inner)
             return f"{of_type.name}[{count}]{brackets}({', '.join([value] * count)})" if value else ""
-        if of_type.name in _BUILT_IN:
+        if is_built_in(of_type.name):  # samplers and images have no value
             return _SCALARS.get(of_type.name, f"{of_type.name}(0)")
         values = [self._value(kind, sizes, most) for _, kind, sizes in self._members_of(of_type)]
         return f"{of_type.name}({', '.join(values)})" if of_type.name and values and all(values) else ""
