@@ -195,7 +195,7 @@ class _Rewriter:
 
     def _replace(self, first: int, last: int, new: str) -> None:
         if span := self._span(first, last):
-            self._instead[span].add(new)
+            self._instead[span].add(new + "\n" * self._text.count("\n", *span))
 
     def _edited(self, begin: int, end: int) -> str:
         """Return a part of the text with its edits; where a macro's calls want different ones, without."""
