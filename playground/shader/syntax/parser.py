@@ -57,7 +57,7 @@ QUALIFIERS = frozenset(
     " layout".split()
 )
 _ASSIGNS = frozenset("= += -= *= /= %= &= |= ^= <<= >>=".split())
-_PRECEDENCE = {
+PRECEDENCE = {
     sign: level
     for level, signs in enumerate(
         ("||", "^^", "&&", "|", "^", "&", "== !=", "< > <= >=", "<< >>", "+ -", "* / %"), 1
@@ -604,7 +604,7 @@ class _Parser:
         first = self._at
         left = self._unary()
         texts = self._texts
-        while (level := _PRECEDENCE.get(texts[self._at], 0)) >= least:
+        while (level := PRECEDENCE.get(texts[self._at], 0)) >= least:
             sign = texts[self._at]
             self._at += 1
             right = self._binary(level + 1)

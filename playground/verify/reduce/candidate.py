@@ -35,7 +35,7 @@ from playground.sketch.load import load_with
 from playground.sketch.model import Sketch
 from playground.sketch.techniques import Techniques, WithLibrary
 from playground.verify.reduce.case import SHOT, Case, copied
-from playground.verify.reduce.edits import LITERALS, LITERALS_WITHOUT_ZERO
+from playground.verify.reduce.edits import NUMBERS, NUMBERS_WITHOUT_ZERO
 
 if TYPE_CHECKING:
     import moderngl
@@ -214,7 +214,8 @@ class FailureKind(ABC):
     """A kind of failure; ``sides`` are the ways in which a candidate must be drawn to see it."""
 
     sides: tuple[Side, ...] = (Side(),)
-    literals: Sequence[str] = LITERALS
+    numbers: Sequence[int] = NUMBERS  # of literals that may be put in
+    names_all: bool = True  # whether what fails names nothing more that is not declared
     as_picture = False  # whether the picture's bytes are looked at, not a pass's values
 
     @abstractmethod
@@ -270,7 +271,7 @@ class NotFinite(FailureKind):
     the first two: what is left is smaller, and may be a NaN of another making.
     """
 
-    literals = LITERALS_WITHOUT_ZERO
+    numbers = NUMBERS_WITHOUT_ZERO
 
     def __init__(self, driver: str = "auto", anywhere: bool = False) -> None:
         self.sides = (Side(driver=driver),)
@@ -390,6 +391,7 @@ class CommandFailure(FailureKind):
     """A command of the user's says that a candidate fails."""
 
     sides = ()
+    names_all = False  # it may be content with a text that does not compile
 
     def __init__(self, command: str) -> None:
         self.command = command

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -37,7 +37,7 @@ from playground.sketch.model import (
     Value,
 )
 from playground.sketch.variants import NAME, Verified, active_variant, content_of, written
-from playground.verify.reduce.edits import tidy
+from playground.verify.reduce.edits import edited, read, tidy, uniforms_of
 
 # ── the record of fast variants: what is reduced runs without being verified ─
 
@@ -74,7 +74,6 @@ SHOT = "reduced"
 """The one shot of a sketch that is written: its picture's size and time."""
 
 _CAMERA = Camera()
-_DECLARED = re.compile(r"^\s*uniform\s+\w+\s+(\w+)", re.MULTILINE)
 _REPEATS = re.compile(r"^\s*#pragma\s+(?:draw\b|kernel\b.*\brepeat\s*=)", re.MULTILINE)
 
 
@@ -93,11 +92,12 @@ class Pass(PickledByFields):
     suffix: str = ".glsl"
     head: str = ""  # what another tool's file has to begin with; none of it is taken out
     beside: tuple[tuple[str, str], ...] = ()  # suffix → text of a file that goes with it, likewise
+    given: tuple[tuple[str, str], ...] = ()  # name that another tool gives it → its type
 
     @cached_property
     def declared(self) -> frozenset[str]:
         """The names of its uniforms."""
-        return frozenset(_DECLARED.findall(self.text))
+        return frozenset(uniforms_of(self.text))
 
     @property
     def live_inputs(self) -> tuple[tuple[str, str], ...]:
@@ -325,10 +325,18 @@ def _plain(step: Step, plan: Plan) -> Case:
         suffix=".frag" if suffix in _OF_SHADERS else suffix,
         head=dialects().head(foreign) if foreign else "",
         beside=((Path(vertex.path).suffix, _words(vertex, as_written=True)),) if vertex else (),
+        given=tuple(_given(foreign.prelude)) if foreign else (),
     )
     named = [(p.default, step.values[p.name]) for p in kernel.file_parameters]
     files = tuple((str(written_out), str(parts)) for written_out, parts in named if foreign)
     return Case(passes=(pass_,), target=name, frame=plan.frame_size, time=plan.time, samples=1, files=files)
+
+
+def _given(prelude: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield what stands before another tool's shader: names, and their types."""
+    for symbol in read("\n".join(prelude)).symbols:
+        if symbol.kind in ("uniform", "variable", "function") and symbol.type and not symbol.arrays:
+            yield symbol.name, symbol.type
 
 
 def _whole_source(kernel: Kernel, plan: Plan) -> SourceText:
@@ -438,5 +446,15 @@ def unwired(text: str, name: str) -> str:
 
     An input that nothing is wired to would else take the latest earlier output of its name.
     """
+    symbols = read(text)
+    prefixes = {f"{prefix}{name}": prefix for prefix in (WIRED, MATCHES, "")}
     fresh = name if name.startswith("no_") else f"no_{name}"
-    return re.sub(rf"(?<![\w.])({WIRED}|{MATCHES}|){name}\b", lambda match: f"{match.group(1)}{fresh}", text)
+    places = {
+        symbols.tree.tokens[one.token].spelled: prefixes[symbols.tree.tokens[one.token].text]
+        for one in symbols.references
+        if symbols.tree.tokens[one.token].text in prefixes
+        and (one.symbol is None or one.symbol.kind == "uniform")
+    }
+    return edited(
+        text, [(at, at + len(f"{prefix}{name}"), f"{prefix}{fresh}") for at, prefix in places.items()]
+    )

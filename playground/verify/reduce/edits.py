@@ -1,516 +1,868 @@
-"""GLSL as tokens, as text with one statement a line, and small edits of it that may make it smaller.
+"""A text's tree, made smaller: what may be left out, simpler expressions, and one form to print it in.
 
-A preprocessor line and a uniform with its annotation are one token each: the header's
-grammar reads them line by line. Everything else is split as GLSL splits it, comments left
-out. ``tidy`` prints any tokens in one form, so that two candidates that differ in blanks
-alone are one.
+A candidate is the text with a few edits, each in the place of a node. Types decide which: an expression gives
+way to a part of its own type, or to a literal of it, so nearly every candidate compiles. What a macro's text
+makes is left as it is, but what a call hands the macro is edited there. ``tidy`` prints any text in one form,
+so that two candidates that differ in blanks alone are one.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
+from typing import NamedTuple
 
-# ── tokens ───────────────────────────────────────────────────────────────────
-
-
-_TOKEN = re.compile(
-    r"(?P<line>^[ \t]*(?:\#[^\n]*|uniform\b[^\n]*))"
-    r"|(?P<comment>//[^\n]*|/\*.*?(?:\*/|\Z))"
-    r"|(?P<number>(?:0[xX][0-9a-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)[uUfF]*)"
-    r"|(?P<word>[A-Za-z_]\w*)"
-    r"|(?P<mark><<=|>>=|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||\^\^|[-+*/%&|^]=|[^\s\w])",
-    re.MULTILINE | re.DOTALL,
+from playground.memo import TEXTS
+from playground.shader.kernel import Output
+from playground.shader.reserved_names import (
+    BUILT_IN_FUNCTIONS,
+    GIVEN,
+    GLSL_WORDS,
+    MATCHES,
+    TOWARDS,
+    WIRED,
 )
-_WORD = re.compile(r"[A-Za-z_]\w*")
-_NUMBER = re.compile(r"\.?\d")
+from playground.shader.syntax.nodes import (
+    Assign,
+    Binary,
+    Block,
+    Call,
+    Case,
+    Conditional,
+    Declaration,
+    Declarator,
+    Do,
+    Empty,
+    Expression,
+    For,
+    Function,
+    If,
+    Index,
+    InterfaceBlock,
+    Jump,
+    Literal,
+    Member,
+    Method,
+    Name,
+    Node,
+    Parenthesized,
+    Struct,
+    Switch,
+    Type,
+    Unary,
+    While,
+    children,
+    walk,
+)
+from playground.shader.syntax.parser import PRECEDENCE, Tree, parse
+from playground.shader.syntax.symbols import Symbol, Symbols, resolve
+from playground.shader.syntax.tokens import Token, tokenize
+from playground.shader.syntax.types import (
+    UNKNOWN,
+    ExpressionType,
+    ExpressionTypes,
+    components,
+    conversions,
+    is_built_in,
+)
 
-PAIRS = {"(": ")", "[": "]", "{": "}"}
-ASSIGNS = frozenset("= += -= *= /= %= &= |= ^= <<= >>=".split())
-OPERATORS = frozenset("+ - * / % << >> < > <= >= == != && || ^^ & | ^".split())
-CONTROL = frozenset("if else for while do switch return case default break continue discard".split())
+# ── printing ─────────────────────────────────────────────────────────────────
+
+
+_ASSIGNS = frozenset("= += -= *= /= %= &= |= ^= <<= >>=".split())
+_OPERATORS = frozenset("+ - * / % << >> < > <= >= == != && || ^^ & | ^".split())
+_CONTROL = frozenset("if else for while do switch return case default break continue discard".split())
 _NO_SPACE_BEFORE = frozenset(") ] , ; . ++ --".split())
 _NO_SPACE_AFTER = frozenset("( [ . ! ~".split())
-
-
-def tokens_of(text: str) -> list[str]:
-    """Split a text into tokens; a whole-line token keeps its inner blanks."""
-    tokens = []
-    for match in _TOKEN.finditer(text):
-        if match.lastgroup != "comment":
-            tokens.append(match.group().strip())
-    return tokens
-
-
-def is_word(token: str) -> bool:
-    """Return whether a token is an identifier or a keyword."""
-    return bool(_WORD.fullmatch(token))
-
-
-def is_number(token: str) -> bool:
-    """Return whether a token is a literal number."""
-    return bool(_NUMBER.match(token))
-
-
-def is_line(token: str) -> bool:
-    """Return whether a token is a whole line: of the preprocessor, or a uniform."""
-    return token.startswith("#") or token.startswith("uniform ")
-
-
-def partners(tokens: Sequence[str]) -> dict[int, int]:
-    """Map each bracket's index to that of its partner, both ways; unpaired ones are left out."""
-    partners_by_index: dict[int, int] = {}
-    open_: list[int] = []
-    for index, token in enumerate(tokens):
-        if token in PAIRS:
-            open_.append(index)
-        elif token in PAIRS.values() and open_ and PAIRS[tokens[open_[-1]]] == token:
-            start = open_.pop()
-            partners_by_index[start], partners_by_index[index] = index, start
-    return partners_by_index
-
-
-def print_tokens(tokens: Sequence[str]) -> str:
-    """Return tokens as text: one statement a line, four blanks a depth, one blank where it reads well."""
-    lines: list[str] = []
-    words: list[str] = []
-    depth = brackets = 0
-    unary = False  # whether the last token was a sign
-
-    def end() -> None:
-        nonlocal words
-        if words:
-            shift = depth - 1 if words[0] == "}" else depth
-            lines.append("    " * max(shift, 0) + "".join(words))
-        words = []
-
-    last = ""
-    for index, token in enumerate(tokens):
-        if is_line(token):
-            end()
-            lines.append(token)
-            last = ""
-            continue
-        sign = token in ("-", "+") and (
-            last in ("", "(", "[", ",", "?", ":", "return", "{", "}", ";") or last in ASSIGNS | OPERATORS
-        )
-        if words and _parted(last, token, unary):
-            words.append(" ")
-        words.append(token)
-        unary = sign
-        brackets += {"(": 1, "[": 1, ")": -1, "]": -1}.get(token, 0)
-        following = tokens[index + 1] if index + 1 < len(tokens) else ""
-        last = token
-        if token == "{":
-            end()
-            depth += 1
-        elif token == "}":
-            shift = depth
-            if following not in (";", ",") and not (is_word(following) and _names_block(tokens, index)):
-                end()
-            depth = max(shift - 1, 0)
-        elif token == ";" and brackets <= 0:
-            end()
-            brackets = 0
-    end()
-    return "\n".join(lines) + "\n" if lines else ""
+_BEFORE_SIGNS = frozenset(["", "(", "[", ",", "?", ":", "return", "{", "}", ";", *_ASSIGNS, *_OPERATORS])
 
 
 def tidy(text: str) -> str:
-    """Return a text without comments, one statement a line."""
-    return print_tokens(tokens_of(text))
+    """Return a text with one statement a line, without comments but for the annotations of uniforms."""
+    tokens, comments = tokenize(text)
+    notes = [comment for comment in comments if comment.text.startswith("//!")]
+    return "\n".join([*_Printer(tokens, notes).lines(), ""]) if tokens else ""
 
 
-def _parted(last: str, token: str, unary: bool) -> bool:
-    if token in _NO_SPACE_BEFORE or last in _NO_SPACE_AFTER or unary:
+def token_count(text: str) -> int:
+    """Return how many tokens a text has."""
+    return len(tokenize(text)[0])
+
+
+class _Printer:
+    def __init__(self, tokens: Sequence[Token], notes: Sequence[NamedTuple]) -> None:
+        self._tokens = tokens
+        self._notes = list(reversed(notes))  # the next one last
+        self._lines: list[str] = []
+        self._words: list[str] = []  # of the open line, blanks among them
+        self._uniform = -1  # the line that an annotation belongs to
+        self._depth = 0
+
+    def lines(self) -> list[str]:
+        brackets, last, is_unary = 0, "", False
+        for index, token in enumerate(self._tokens):
+            self._annotate(token.start)
+            text = token.text
+            if token.kind == "directive":
+                self._end()
+                self._lines.append(text.rstrip())
+                last = ""
+                continue
+            is_sign = text in ("-", "+") and last in _BEFORE_SIGNS
+            if self._words and _is_parted(last, text, is_unary):
+                self._words.append(" ")
+            self._words.append(text)
+            is_unary, last = is_sign, text
+            brackets += {"(": 1, "[": 1, ")": -1, "]": -1}.get(text, 0)
+            if text == "{":
+                self._end()
+                self._depth += 1
+            elif text == "}":
+                depth = self._depth
+                if not self._goes_on(index + 1):
+                    self._end()
+                self._depth = max(depth - 1, 0)
+            elif text == ";" and brackets <= 0:
+                self._end()
+                brackets = 0
+        self._end()
+        self._annotate(self._tokens[-1].end + len(self._lines[-1]) + 1 if self._notes else 0, every=True)
+        return self._lines
+
+    def _end(self) -> None:
+        if self._words:
+            shift = self._depth - 1 if self._words[0] == "}" else self._depth
+            self._uniform = len(self._lines) if "uniform" in self._words else -1
+            self._lines.append("    " * max(shift, 0) + "".join(self._words))
+        self._words = []
+
+    def _annotate(self, place: int, *, every: bool = False) -> None:
+        """Append the annotations before a place to the uniform above, on one line."""
+        while self._notes and (every or self._notes[-1].start < place):  # type: ignore[attr-defined]
+            note = self._notes.pop().text[3:].strip()  # type: ignore[attr-defined]
+            if self._uniform == len(self._lines) - 1 >= 0 and not self._words:
+                mark = " " if "//!" in self._lines[-1] else "  //! "
+                self._lines[-1] += f"{mark}{note}" if note else ""
+
+    def _goes_on(self, index: int) -> bool:
+        """Return whether a closing brace's line does: in front of ``;``, or of a name as in ``} light;``."""
+        following = [token.text for token in self._tokens[index : index + 2]]
+        if following[:1] in ([";"], [","]):
+            return True
+        is_name = bool(following) and self._tokens[index].kind == "word" and following[0] not in _CONTROL
+        return is_name and following[1:] in ([";"], ["["])
+
+
+def _is_parted(last: str, text: str, is_unary: bool) -> bool:
+    """Return whether a blank stands between two tokens of a line."""
+    if text in _NO_SPACE_BEFORE or last in _NO_SPACE_AFTER or (is_unary and text[0] not in "+-"):
         return False
-    if token == "[":
+    if text == "[":
         return False
-    if token == "(":
-        return not (is_word(last) and last not in CONTROL)
+    if text == "(":
+        return not (last[-1:].isalnum() or last[-1:] == "_" or last == "]") or last in _CONTROL
     if last in ("++", "--"):
-        return token in OPERATORS or token in ASSIGNS
+        return text in _OPERATORS or text in _ASSIGNS
     return True
 
 
-def _names_block(tokens: Sequence[str], index: int) -> bool:
-    """Return whether the word after a closing brace names what the block declared, as ``} light;``."""
-    return index + 2 < len(tokens) and tokens[index + 2] in (";", "[") and tokens[index + 1] not in CONTROL
+# ── candidates ───────────────────────────────────────────────────────────────
 
 
-# ── edits: each gives a whole new text, with fewer tokens, or a literal for a name
+NUMBERS = (0, 1)
+"""The numbers of literals that may take the place of an expression."""
 
-
-LITERALS = ("0.0", "1.0", "0", "1", "true", "false")
-"""What may take the place of an expression."""
-
-LITERALS_WITHOUT_ZERO = ("1.0", "1", "true", "false")
+NUMBERS_WITHOUT_ZERO = (1,)
 """The same where a zero could itself bring about what is looked for: a whole 0 becomes 0.0 in a division."""
 
-Edit = tuple[int, int, tuple[str, ...]]
-"""From which token to which, and what takes their place."""
+Edit = tuple[int, int, str]
+"""Where a part of a text begins and ends, and what takes its place."""
 
-_ENTRY_POINTS = frozenset("kernel visit vertex fragment main".split())
-_TYPES = frozenset(
-    "void bool int uint float vec2 vec3 vec4 ivec2 ivec3 ivec4 uvec2 uvec3 uvec4 bvec2 bvec3 bvec4"
-    " mat2 mat3 mat4 const in out inout struct sampler2D flat highp mediump lowp precise".split()
-)
-_OPENERS = frozenset({"(", "[", ",", "?", ":", "return", *ASSIGNS, *OPERATORS, "!", "~"})
+_ARITHMETIC = frozenset("+-*/")
+_ENTRY_POINTS = frozenset("kernel visit vertex fragment main mainImage".split())
+_PRIMARY, _POSTFIX_OPERAND, _UNARY, _ARGUMENT = 14, 13, 12, 0  # beside the parser's levels of operators
+_OUTPUTS = {"modf": (1,), "frexp": (1,), "uaddCarry": (2,), "usubBorrow": (2,)} | dict.fromkeys(
+    ("umulExtended", "imulExtended"), (2, 3)
+)  # arguments that functions of GLSL write
+_OUTPUT = re.compile(r'\boutput\s*=\s*"([^"]*)"')
 _OPTION = re.compile(r',?\s*\b(\w+)\s*=\s*("[^"]*"|\d+)')
-_UNIFORM = re.compile(r"uniform\s+(\w+)\s+(\w+)\s*(?:=\s*([^;]*?)\s*)?;(.*)")
+_ROLE = re.compile(r"\w+(?:\([^)]*\))?")
 
 
-def expressions(text: str, literals: Sequence[str] = LITERALS) -> Iterator[str]:
-    """Yield the text with one expression made simpler, the largest first."""
-    tokens = tokens_of(text)
-    for low, high, instead in _in_order(tokens, literals):
-        yield print_tokens([*tokens[:low], *instead, *tokens[high:]])
+def edited(text: str, edits: Iterable[Edit]) -> str:
+    """Return a text with edits, none of which overlap."""
+    for start, end, new in sorted(set(edits), reverse=True):
+        apart = " " if new[:1] in ("+", "-") and text[start - 1 : start] == new[:1] else ""
+        text = f"{text[:start]}{apart}{new}{text[end:]}"
+    return text
 
 
-def in_both(text: str, other: str, literals: Sequence[str] = LITERALS) -> Iterator[tuple[str, str]]:
-    """Yield two texts with the same expression made simpler in each, where both have it once.
+def outputs_of(text: str) -> list[Output]:
+    """Return what a kernel's header says that it gives."""
+    match = _OUTPUT.search(text)
+    rows = [row.partition(":") for row in (match[1] if match else "frame:rgba16f").split(",")]
+    return [Output(name.strip(), form.strip()) for name, _, form in rows]
 
-    A kernel and the compute shader that replaces it agree only as long as both change.
+
+class Candidates:
+    """The smaller texts of one text, of each kind those first that take the most away.
+
+    ``given``: the types of names that stand around it, besides those that the engine gives a kernel.
     """
-    tokens, others = tokens_of(text), tokens_of(other)
-    for low, high, instead in _in_order(tokens, literals):
-        index = _only_place(others, tokens[low:high])
-        if index is not None and _only_place(tokens, tokens[low:high]) == low:
-            changed = [*others[:index], *instead, *others[index + high - low :]]
-            yield print_tokens([*tokens[:low], *instead, *tokens[high:]]), print_tokens(changed)
+
+    def __init__(
+        self, text: str, numbers: Sequence[int] = NUMBERS, given: Mapping[str, str] | None = None
+    ) -> None:
+        self.text = text
+        self._numbers = numbers
+        self._symbols = read(text)
+        self._tree: Tree = self._symbols.tree
+        self._given = given or {}
+        self._uses: dict[Symbol, list[int]] = {}  # tokens, that of its declaration apart
+        for one in self._symbols.references:
+            for symbol in (one.symbol, *one.overloads):
+                if symbol is not None and one.token != symbol.token:
+                    self._uses.setdefault(symbol, []).append(one.token)
+
+    # ── expressions ──────────────────────────────────────────────────────────
+
+    def simplified(self) -> Iterator[str]:
+        """Yield the text with one expression replaced by a part of it, or by a literal."""
+        for edit in self._simplifications:
+            yield edited(self.text, [edit])
+
+    def simplified_with(self, other: str) -> Iterator[tuple[str, str]]:
+        """Yield two texts with the same expression made simpler in each, where both have it once.
+
+        A kernel and the compute shader that replaces it agree only as long as both change.
+        """
+        tokens, others = tokenize(self.text)[0], tokenize(other)[0]
+        for edit in self._simplifications:
+            start, end, new = edit
+            part = [token.text for token in tokenize(self.text[start:end])[0]]
+            there = _only_place(others, part)
+            if there is not None and _only_place(tokens, part) is not None:
+                yield edited(self.text, [edit]), edited(other, [(*there, new)])
+
+    @cached_property
+    def _simplifications(self) -> list[Edit]:
+        tops = [top for top in self._tree.declarations if not _is_uniform(top)]
+        edits = {edit for top in tops for edit in self._of_expressions(top)}
+        return sorted(edits, key=lambda edit: (edit[0] - edit[1] + len(edit[2]), -edit[0], edit[2]))
+
+    def _of_expressions(self, top: Node) -> Iterator[Edit]:
+        for node in walk(top):
+            if isinstance(node, Assign) and node.operator != "=":
+                place = self._place(node.target.last, node.target.last + 1)
+                if place and self._type_of(node.target) == self._type_of(node.value):
+                    yield *place, "= "  # a letter longer, so that it comes last
+            if node not in self._values:
+                continue
+            whole = self._with_brackets(node)
+            place = self._place(whole.first, whole.last)
+            if place is None:
+                continue
+            old = whole.last - whole.first
+            for new in self._simpler(node, whole):
+                count = token_count(new)
+                if count < old or (old == 1 == count and isinstance(node, Name)):
+                    yield *place, new
+
+    def _simpler(self, node: Node, whole: Node) -> Iterator[str]:
+        accepted = self._accepted(node, whole)
+        of_type, arrays = self._type_of(node)
+        if isinstance(node, Parenthesized):
+            yield self._fitting(node.inside, whole)
+            return
+        if not arrays and not isinstance(node, Literal) and node not in self._loop_conditions:
+            yield from (text for name, _ in accepted for text in self._literals(name))
+        if isinstance(node, Call) and not node.arrays:
+            if components(node.name)[1] > 1:
+                scalars = [one for one in node.arguments if components(self._type_of(one)[0])[1] == 1]
+                yield from (f"{node.name}({self._source(one)})" for one in scalars)
+            elif not of_type:
+                yield f"{node.name}()"
+        parent = self._parents.get(whole)
+        while isinstance(parent, Member | Parenthesized):
+            parent = self._parents.get(parent)
+        is_converted = isinstance(parent, Binary | Assign | Declarator | Call)
+        for part in self._parts(node, accepted, is_converted):
+            yield self._fitting(part, whole)
+
+    def _with_brackets(self, node: Node) -> Node:
+        """Return an expression with all the brackets around it."""
+        while isinstance(parent := self._parents.get(node), Parenthesized):
+            node = parent
+        return node
+
+    def _accepted(self, node: Node, whole: Node) -> list[ExpressionType]:
+        """Return the types that may stand where an expression does: its own, and a scalar beside a vector."""
+        own = self._type_of(node)
+        parent = self._parents.get(whole)
+        other = None
+        if isinstance(parent, Binary) and parent.operator in _ARITHMETIC:
+            other = parent.left if parent.right is whole else parent.right
+        elif isinstance(parent, Assign) and parent.operator[:-1] in _ARITHMETIC and parent.value is whole:
+            other = parent.target
+        scalar, count = components(own[0])
+        is_beside_vector = other is not None and count > 1 and self._type_of(other) == own
+        return [own, (scalar, 0)] if is_beside_vector else [own]
+
+    def _parts(self, node: Node, accepted: Sequence[ExpressionType], is_converted: bool) -> Iterator[Node]:
+        """Yield the parts of an expression that may stand in its place, the outermost on each way down.
+
+        ``is_converted``: whole numbers become floats there by themselves.
+        """
+        stack = list(children(node))
+        while stack:
+            part = stack.pop()
+            own = self._type_of(part)
+            fits = own == UNKNOWN or own in accepted
+            if is_converted and not fits:
+                floats = (other for other in accepted if components(other[0])[0] == "float")
+                fits = any(conversions(own, other) is not None for other in floats)
+            if fits and part not in self._written:
+                yield part
+            if not fits or own == UNKNOWN or own != accepted[0]:
+                stack += children(part)
+
+    def _literals(self, of_type: str) -> Iterator[str]:
+        if of_type == "bool":
+            yield from ("true", "false")
+            return
+        scalar, count = components(of_type)
+        for number in self._numbers if is_built_in(of_type) else ():
+            spelt = {"int": f"{number}", "uint": f"{number}u", "bool": "true"}.get(scalar, f"{number}.0")
+            yield spelt if count == 1 and scalar != "double" else f"{of_type}({spelt})"
+
+    def _fitting(self, part: Node, replaced: Node) -> str:
+        """Return an expression as it may stand in the place of another, in brackets where it must."""
+        while isinstance(part, Parenthesized):
+            part = part.inside
+        text = self._source(part)
+        is_loose = _precedence(part) < _precedence_in(self._parents.get(replaced), replaced)
+        return f"({text})" if is_loose else text
+
+    def _type_of(self, node: Node) -> ExpressionType:
+        return self._types.of(node)
+
+    @cached_property
+    def _types(self) -> ExpressionTypes:
+        names = {one.name for one in self._symbols.symbols if one.kind == "uniform"}
+        given = {name: of_type for name, (of_type, _) in GIVEN.items()}
+        given |= {f"{prefix}{name}": "bool" for prefix in (WIRED, MATCHES) for name in names}
+        given |= {f"{TOWARDS}{name}": "vec3" for name in names}
+        outputs = outputs_of(self.text)
+        given |= {f"previous_{output.name}": output.glsl for output in outputs}
+        return ExpressionTypes(self._symbols, given | {"previous": outputs[0].glsl, **self._given})
+
+    @cached_property
+    def _parents(self) -> dict[Node, Node]:
+        return {part: node for node in walk(*self._tree.declarations) for part in children(node)}
+
+    @cached_property
+    def _values(self) -> set[Node]:
+        """The expressions that are read, but sizes of arrays and labels of cases."""
+        values: set[Node] = set()
+        stack: list[Node] = list(self._tree.declarations)
+        while stack:
+            node = stack.pop()
+            if isinstance(node, _EXPRESSIONS) and node not in self._written:
+                values.add(node)
+            parts = list(children(node))
+            if isinstance(node, Type | Declarator):
+                parts = [node.value] if isinstance(node, Declarator) and node.value is not None else []
+            stack += [] if isinstance(node, Case) else parts
+        return values
+
+    @cached_property
+    def _written(self) -> set[Node]:
+        """What expressions write, whole and their bases: targets, and arguments that functions write."""
+        targets: list[Node] = []
+        for node in walk(*self._tree.declarations):
+            if isinstance(node, Assign):
+                targets.append(node.target)
+            elif isinstance(node, Unary) and node.operator in ("++", "--"):
+                targets.append(node.operand)
+            elif isinstance(node, Call):
+                targets += self._outputs(node)
+        return {base for target in targets for base in _bases(target)}
+
+    def _outputs(self, call: Call) -> list[Node]:
+        """Return the arguments that a call may write; all, of a function that nobody knows."""
+        function = self._types.overload(call)
+        if function is not None:
+            assert isinstance(function.node, Function)
+            pairs = zip(function.node.parameters, call.arguments, strict=False)
+            return [one for p, one in pairs if not {"out", "inout"}.isdisjoint(p.type.qualifiers)]
+        if call.name.startswith(("atomic", "imageAtomic")):
+            return call.arguments[:1]
+        if call.name in BUILT_IN_FUNCTIONS:
+            return [one for i, one in enumerate(call.arguments) if i in _OUTPUTS.get(call.name, ())]
+        is_type = is_built_in(call.name) or call.name.startswith(("texture", "texel", "shadow", "image"))
+        symbol = self._symbols.symbol_at.get(call.at)
+        return [] if is_type or symbol is not None else call.arguments
+
+    @cached_property
+    def _loop_conditions(self) -> set[Node]:
+        """What makes a loop end: with a literal in its place, it might not."""
+        changed = {self._symbols.symbol_at.get(one.first) for one in self._written if isinstance(one, Name)}
+        parts: set[Node] = set()
+        for node in walk(*self._tree.declarations):
+            if isinstance(node, For | While | Do):
+                parts |= {node.step} if isinstance(node, For) and node.step is not None else set()
+                for part in walk(node.condition) if node.condition is not None else ():
+                    names = (one for one in walk(part) if isinstance(one, Name))
+                    if any(self._symbols.symbol_at.get(one.first) in changed for one in names):
+                        parts.add(part)
+        return parts
+
+    @cached_property
+    def undefined(self) -> frozenset[str]:
+        """The variables that are never given a value, and the functions that return none."""
+        set_ = {self._symbols.symbol_at.get(one.first) for one in self._written if isinstance(one, Name)}
+        names = {
+            symbol.name
+            for symbol in self._symbols.symbols
+            if symbol not in set_ and _begins_undefined(symbol)
+        }
+        functions = (node for node in self._tree.declarations if isinstance(node, Function) and node.body)
+        return frozenset(
+            names
+            | {f"{one.name}()" for one in functions if one.type.name != "void" and not _returns(one.body)}
+        )
+
+    # ── variables and functions ──────────────────────────────────────────────
+
+    def inlined(self) -> Iterator[str]:
+        """Yield the text with one variable less: its value in its place, where that makes it smaller."""
+        for node in walk(*self._tree.declarations):
+            if isinstance(node, Declaration) and len(node.names) == 1 and node.names[0].value is not None:
+                symbol = self._symbols.symbol_at.get(node.names[0].at)
+                place = self._place(node.first, node.last)
+                if symbol is not None and place and symbol.kind in ("local", "variable"):
+                    yield from self._inlinings(node, symbol, place)
+
+    def _inlinings(self, node: Declaration, symbol: Symbol, place: tuple[int, int]) -> Iterator[str]:
+        value = node.names[0].value
+        assert value is not None
+        if (following := self._following(node)) is not None and isinstance(following, Expression):
+            assign = following.value
+            if isinstance(assign, Assign) and assign.operator == "=" and isinstance(assign.target, Name):
+                # What is overwritten at once need not be set.
+                own = self._place(following.first, following.last)
+                read = [one for one in walk(assign.value) if isinstance(one, Name)]
+                is_same = self._symbols.symbol_at.get(assign.target.first) is symbol
+                if is_same and own and symbol not in {self._symbols.symbol_at.get(n.first) for n in read}:
+                    start = self._tree.span(value)[0]
+                    new = self._source(assign.value)
+                    yield edited(self.text, [(start, self._tree.span(value)[1], new), (*own, "")])
+        uses = [self._name_at.get(token) for token in self._uses.get(symbol, ())]
+        names = [name for name in uses if name is not None and name not in self._written]
+        if not uses or len(names) < len(uses):
+            return
+        edits: list[Edit] = [(*place, "")]
+        source = self._source(value)
+        declared = symbol.type, symbol.arrays
+        if self._type_of(value)[0] and self._type_of(value) != declared and not symbol.arrays:
+            source = f"{symbol.type}({source})"
+        is_loose = "(" not in source[: len(symbol.type) + 1] or self._type_of(value) == declared
+        for name in names:
+            there = self._place(name.first, name.last)
+            if there is None:
+                return
+            loose = is_loose and _precedence(value) < _precedence_in(self._parents.get(name), name)
+            edits.append((*there, f"({source})" if loose else source))
+        text = edited(self.text, edits)
+        if token_count(text) < token_count(self.text):
+            yield text
+
+    def _following(self, node: Node) -> Node | None:
+        """Return the statement behind one."""
+        parent = self._parents.get(node)
+        if not isinstance(parent, Block):
+            return None
+        index = parent.statements.index(node)
+        return next(iter(parent.statements[index + 1 : index + 2]), None)
+
+    @cached_property
+    def _name_at(self) -> dict[int, Name]:
+        return {n.first: n for n in walk(*self._tree.declarations) if isinstance(n, Name)}
+
+    def without_parameter(self) -> Iterator[str]:
+        """Yield the text without one parameter that a function does not read, nor its calls' arguments."""
+        functions = self._symbols.functions()
+        for symbol in functions:
+            function = symbol.node
+            assert isinstance(function, Function)
+            same = [one for one in functions if one.name == symbol.name]
+            if symbol.name in _ENTRY_POINTS or function.body is None:
+                continue
+            if any(len(one.node.parameters) != len(function.parameters) for one in same):  # type: ignore[attr-defined]
+                continue
+            if sum(one.node.body is not None for one in same) > 1:  # type: ignore[attr-defined]
+                continue
+            calls = [site.node.arguments for site in self._symbols.calls if site.node.name == symbol.name]
+            lists = [*(one.node.parameters for one in same), *calls]  # type: ignore[attr-defined]
+            for number, parameter in enumerate(function.parameters):
+                own = self._symbols.symbol_at.get(parameter.at) if parameter.name else None
+                places = [self._item_place(row, number) for row in lists]
+                if (own is None or own not in self._uses) and None not in places:
+                    yield edited(self.text, [(*place, "") for place in places if place])
+
+    def _item_place(self, row: Sequence[Node], number: int) -> tuple[int, int] | None:
+        """Return the place of an item of a list, with a comma beside it."""
+        if number >= len(row):
+            return None
+        first, last = row[number].first, row[number].last
+        if number + 1 < len(row):
+            last = row[number + 1].first
+        elif number:
+            first = row[number - 1].last
+        return self._place(first, last)
+
+    def stubs(self) -> Iterator[str]:
+        """Yield the text with one function's body replaced by a constant, the last function first."""
+        for top in reversed(self._tree.declarations):
+            if not isinstance(top, Function) or top.body is None or top.type.arrays:
+                continue
+            place = self._place(top.body.first, top.body.last)
+            literals = [one for one in self._literals(top.type.name) if one != "true"]
+            if literals and place:
+                new = f"{{ return {literals[0]}; }}"
+                if token_count(new) < token_count(self.text[slice(*place)]):
+                    yield edited(self.text, [(*place, new)])
+
+    def without_unused(self) -> Iterator[str]:
+        """Yield the text without all that nothing reads, then without each of it."""
+        edits = list(self._unused())
+        if len(edits) > 1:
+            yield edited(self.text, [edit for group in edits for edit in group])
+        yield from (edited(self.text, group) for group in edits)
+
+    def _unused(self) -> Iterator[list[Edit]]:
+        names = {token.text for token in self._tree.tokens}
+        called = {site.node.name for site in self._symbols.calls} | _ENTRY_POINTS
+        for top in self._tree.declarations:
+            if isinstance(top, Function) and top.name not in called:
+                if (place := self._place(top.first, top.last)) is not None:
+                    yield [(*place, "")]
+                continue
+            for node in walk(top):
+                if isinstance(node, Declaration) and node.names:
+                    yield from self._unused_names(node)
+        for macro in self._tree.preprocessed.macros:
+            expanded = {one.name for one in self._tree.preprocessed.expansions}
+            if macro.start >= 0 and macro.name not in expanded | names:
+                bodies = (one.body for one in self._tree.preprocessed.macros)
+                if not any(token.text == macro.name for body in bodies for token in body):
+                    yield [(macro.start, macro.end, "")]
+
+    def _unused_names(self, node: Declaration) -> Iterator[list[Edit]]:
+        symbols = [self._symbols.symbol_at.get(one.at) for one in node.names]
+        parent = self._parents.get(node)
+        if isinstance(parent, If | While | Do | For) or not node.type.name:
+            return
+        for number, symbol in enumerate(symbols):
+            if symbol is None or symbol.kind not in ("local", "variable", "uniform"):
+                continue
+            places: list[tuple[int, int] | None] = []
+            for token in self._uses.get(symbol, ()):
+                statement = self._setting(token)
+                places.append(self._place(statement.first, statement.last) if statement else None)
+            own = node if len(node.names) == 1 else None
+            places.append(self._place(own.first, own.last) if own else self._item_place(node.names, number))
+            if None not in places:
+                yield [(*place, "") for place in dict.fromkeys(places) if place]
+
+    def _setting(self, token: int) -> Expression | None:
+        """Return the statement that does nothing but set the variable named by a token."""
+        node: Node | None = self._name_at.get(token)
+        while isinstance(parent := self._parents.get(node) if node else None, Member | Index):
+            if parent.base is not node:
+                return None
+            node = parent
+        if not isinstance(parent, Assign) or parent.target is not node:
+            return None
+        statement = self._parents.get(parent)
+        in_list = isinstance(statement, Expression) and isinstance(self._parents.get(statement), Block)
+        return statement if in_list and isinstance(statement, Expression) else None
+
+    # ── statements ───────────────────────────────────────────────────────────
+
+    def unwrapped(self) -> Iterator[str]:
+        """Yield the text with one statement replaced by what hangs on it."""
+        for node in walk(*self._tree.declarations):
+            place = self._place(node.first, node.last)
+            if place is None:
+                continue
+            for part in self._inside(node):
+                yield edited(self.text, [(*place, part)])
+
+    def _inside(self, node: Node) -> Iterator[str]:
+        in_block = isinstance(self._parents.get(node), Block)
+        source = partial(self._bare if in_block else self._tree.source)
+        if isinstance(node, Block) and in_block:
+            yield self._bare(node)
+        elif isinstance(node, If):
+            yield source(node.yes)
+            if node.no is not None:
+                yield source(node.no)
+                start = self._tree.span(node)[0]
+                yield self.text[start : self._tree.span(node.yes)[1]]
+        elif isinstance(node, For) and not _jumps(node.body) and not isinstance(node.start, Empty):
+            both = f"{self._source(node.start)} {self._bare(node.body)}"
+            yield both if in_block else f"{{ {both} }}"
+        elif isinstance(node, For | While | Do) and not _jumps(node.body):
+            yield source(node.body)
+
+    def _bare(self, node: Node) -> str:
+        """Return a statement, a block without its braces."""
+        if not isinstance(node, Block):
+            return self._source(node)
+        start, end = self._tree.span(node)
+        return self.text[start + 1 : end - 1]
+
+    def lists(self) -> list[list[tuple[int, int]]]:
+        """Return where the items of each list are: of the whole text, of each block and struct, in order.
+
+        An item of a block is a statement, one of the text a declaration or a directive. A condition's
+        directives and what is between them are one item.
+        """
+        tokens = tokenize(self.text)[0]
+        lines = [*(token[2:4] for token in tokens if token.kind == "directive"), *_groups(tokens)]
+        lists = [_merged([*map(self._tree.span, self._tree.declarations), *lines])]
+        for node in walk(*self._tree.declarations):
+            if isinstance(node, Block | Struct | InterfaceBlock) and self._place(node.first, node.last):
+                start, end = self._tree.span(node)
+                items = node.statements if isinstance(node, Block) else node.members
+                inside = [line for line in lines if start < line[0] < end]
+                lists.append(_merged([*map(self._tree.span, items), *inside]))
+        return lists
+
+    # ── headers ──────────────────────────────────────────────────────────────
+
+    def headers(self) -> Iterator[str]:
+        """Yield the text with an option less in its pragma, one step in place of many, or less annotation."""
+        for token in self._tree.preprocessed.directives:
+            if token.text.startswith("#pragma"):
+                for start, end, new in _shorter_pragma(token.text):
+                    yield edited(self.text, [(token.start + start, token.start + end, new)])
+        for _, note in self._annotated():
+            words = note.text[3:].strip()
+            role = _ROLE.match(words)
+            shorter = ["", *([f"//! {role[0]}"] if role else ())]
+            if role and (kind := role[0].partition("(")[0]) in ("input", "file"):
+                shorter.append(f"//! {kind}")
+            yield from (
+                edited(self.text, [(note.start, note.end, new)])
+                for new in dict.fromkeys(shorter)
+                if len(new) < len(f"//! {words}")
+            )
+
+    def constants(self, values: Mapping[str, str]) -> Iterator[str]:
+        """Yield the text with one parameter folded in as a constant; ``values`` are GLSL, by name.
+
+        A parameter that is not among them has its default.
+        """
+        notes = {id(declaration): note for declaration, note in self._annotated()}
+        for node in self._tree.declarations:
+            if not (isinstance(node, Declaration) and _is_uniform(node) and len(node.names) == 1):
+                continue
+            one = node.names[0]
+            default = self._source(one.value) if one.value is not None else ""
+            value = values.get(one.name, default)
+            if value and is_built_in(node.type.name) and (place := self._place(node.first, node.last)):
+                end = notes[id(node)].end if id(node) in notes else place[1]
+                yield edited(self.text, [(place[0], end, f"const {node.type.name} {one.name} = {value};")])
+
+    def _annotated(self) -> Iterator[tuple[Declaration, Token]]:
+        """Yield the uniforms that have an annotation behind them, with it."""
+        notes = [one for one in self._tree.preprocessed.comments if one.text.startswith("//!")]
+        for node in self._tree.declarations:
+            if isinstance(node, Declaration) and _is_uniform(node):
+                end = self._tree.span(node)[1]
+                note = next((one for one in notes if one.start >= end), None)
+                if note is not None and not self.text[end : note.start].strip():
+                    yield node, note  # type: ignore[misc]
+
+    # ── places ───────────────────────────────────────────────────────────────
+
+    def _source(self, node: Node) -> str:
+        """Return the text of a node, behind the preprocessor where a macro makes it with others."""
+        place = self._place(node.first, node.last)
+        if place is not None:
+            return self.text[slice(*place)]
+        return " ".join(token.text for token in self._tree.tokens[node.first : node.last])
+
+    def _place(self, first: int, last: int) -> tuple[int, int] | None:
+        """Return where some tokens stand in the text; None where a macro's text makes them with others."""
+        tokens = self._tree.tokens
+        if last <= first:
+            return None
+        begin, end = tokens[first], tokens[last - 1]
+        around = tokens[first - 1 : first] + tokens[last : last + 1]
+        if not any(one.macros for one in (begin, end)):
+            return begin.start, end.end
+        if not any(one.macros and one.start in (begin.start, end.start) for one in around):
+            return begin.start, end.end
+        in_call = all(begin.start <= one.spelled < begin.end for one in tokens[first:last])
+        return (begin.spelled, end.spelled + len(end.text)) if in_call else None
 
 
-def _only_place(tokens: list[str], part: list[str]) -> int | None:
-    """Return where some tokens occur in others, if they do so once."""
-    indices = [i for i in range(len(tokens) - len(part) + 1) if tokens[i : i + len(part)] == part]
-    return indices[0] if len(indices) == 1 else None
+_EXPRESSIONS = (Binary, Unary, Conditional, Call, Method, Parenthesized, Member, Index, Name, Literal)
 
 
-def _in_order(tokens: list[str], literals: Sequence[str]) -> list[Edit]:
-    """Return the edits of some tokens, those that take the most away first."""
-    return sorted(set(_edits(tokens, literals)), key=lambda e: (e[0] - e[1] + len(e[2]), -e[0], e[2]))
+def _precedence(node: Node) -> int:
+    """Return how tightly an expression holds together: the higher, the fewer brackets it needs."""
+    if isinstance(node, Binary):
+        return -1 if node.operator == "," else PRECEDENCE[node.operator]
+    if isinstance(node, Assign | Conditional):
+        return 0
+    return _UNARY if isinstance(node, Unary) and not node.is_postfix else _PRIMARY
 
 
-def _edits(tokens: list[str], literals: Sequence[str]) -> Iterator[Edit]:
-    pairs = partners(tokens)
-    depth = 0
-    for index, token in enumerate(tokens):
-        depth += (token == "{") - (token == "}")
-        if is_line(token):
-            continue
-        if token in _OPENERS and index + 1 < len(tokens) and (depth or token in ASSIGNS):
-            yield from _of_region(tokens, index + 1, pairs, literals)
-        if depth and _begins_primary(tokens, index):
-            yield from _of_primary(tokens, index, pairs, literals)
-        if token in ASSIGNS and token != "=":
-            yield index, index + 1, ("=",)
-        if token in ("-", "+", "!", "~") and depth and _is_sign(tokens, index):
-            yield index, index + 1, ()
+def _precedence_in(parent: Node | None, node: Node) -> int:
+    """Return what an expression needs so that it may stand without brackets where another does."""
+    match parent:
+        case Binary():
+            level = _precedence(parent)
+            return level + (parent.right is node)
+        case Unary():
+            return _UNARY
+        case Member() | Method():
+            return _POSTFIX_OPERAND
+        case Index():
+            return _POSTFIX_OPERAND if parent.base is node else -1
+        case Conditional():
+            return 1 if parent.condition is node else _ARGUMENT
+        case Call() | Declarator() | Assign():
+            return _ARGUMENT
+    return -1
 
 
-def inlined(text: str) -> Iterator[str]:
-    """Yield the text with one variable less: its value in its place, if it is one token or used once."""
-    tokens = tokens_of(text)
-    pairs = partners(tokens)
-    for index in range(1, len(tokens) - 1):
-        name = tokens[index]
-        if tokens[index + 1] != "=" or not is_word(name) or not is_word(tokens[index - 1]):
-            continue
-        end = _end_of_region(tokens, index + 2, pairs)
-        if tokens[end : end + 1] != [";"]:
-            continue
-        if tokens[end + 1 : end + 3] == [name, "="]:
-            yield print_tokens([*tokens[:index], *tokens[end + 1 :]])  # what is overwritten at once
-        first = index - 2 if index > 1 and tokens[index - 2] == "const" else index - 1
-        uses = [i for i in range(end, len(tokens)) if tokens[i] == name and tokens[i - 1] != "."]
-        value = tokens[index + 2 : end]
-        if not uses or (len(uses) > 1 and len(value) > 1):
-            continue
-        bare = len(value) == 1 or _end_of_primary(tokens, index + 2, pairs)[-1] == end
-        instead = value if bare else ["(", *value, ")"]
-        rest: list[str] = []
-        for position, token in enumerate(tokens):
-            if position in uses:
-                rest += instead
-            elif not first <= position <= end:
-                rest.append(token)
-        yield print_tokens(rest)
+def _is_uniform(node: Node) -> bool:
+    return isinstance(node, Declaration) and "uniform" in node.type.qualifiers
 
 
-def _is_sign(tokens: list[str], index: int) -> bool:
-    return tokens[index] in ("!", "~") or (index > 0 and tokens[index - 1] in _OPENERS)
+def _bases(node: Node) -> Iterator[Node]:
+    """Yield what is written by an expression, and what that is a part of."""
+    yield node
+    while isinstance(node, Member | Index | Parenthesized):
+        node = node.inside if isinstance(node, Parenthesized) else node.base
+        yield node
 
 
-def _end_of_region(tokens: list[str], start: int, pairs: dict[int, int]) -> int:
-    """Return where an expression ends: before the bracket, comma, colon or semicolon that closes it."""
-    index = start
-    while index < len(tokens):
-        token = tokens[index]
-        if token in PAIRS and index in pairs:
-            index = pairs[index]
-        elif token in (")", "]", "}", ",", ";", "?", ":", "{") or is_line(token) or token in ASSIGNS:
-            return index
-        index += 1
-    return index
+def _begins_undefined(symbol: Symbol) -> bool:
+    if isinstance(symbol.node, Declarator):
+        return symbol.kind == "local" and symbol.node.value is None
+    return symbol.kind == "parameter" and "out" in symbol.qualifiers
 
 
-def _of_region(
-    tokens: list[str], start: int, pairs: dict[int, int], literals: Sequence[str]
-) -> Iterator[Edit]:
-    end = _end_of_region(tokens, start, pairs)
-    if end <= start:
-        return
-    whole = tokens[start:end]
-    for literal in literals:
-        if len(whole) > 1 or not (is_number(whole[0]) or whole[0] in ("true", "false")):
-            yield start, end, (literal,)
-    index = start
-    while index < end:
-        if tokens[index] in PAIRS and index in pairs:
-            index = pairs[index]
-        elif tokens[index] in OPERATORS and index > start and not _is_sign(tokens, index):
-            yield start, index + 1, ()
-            yield index, end, ()
-        index += 1
-    if end < len(tokens) and tokens[end] == "?":
-        yes = _end_of_region(tokens, end + 1, pairs)
-        if yes < len(tokens) and tokens[yes] == ":":
-            no = _end_of_region(tokens, yes + 1, pairs)
-            yield start, no, tuple(tokens[end + 1 : yes])
-            yield start, no, tuple(tokens[yes + 1 : no])
+def _returns(body: Node | None) -> bool:
+    """Return whether a function's own level has a return that hangs on nothing."""
+    if isinstance(body, Block):
+        return any(map(_returns, body.statements))
+    return isinstance(body, Jump) and body.word == "return"
 
 
-def _begins_primary(tokens: list[str], index: int) -> bool:
-    """Return whether a token begins an operand: not a declared name, a type, or what is assigned to."""
-    token = tokens[index]
-    before = tokens[index - 1] if index else ""
-    if token == "(":
-        return not is_word(before) or before == "return"
-    if not (is_word(token) or is_number(token)) or token in CONTROL or before == ".":
-        return False
-    following = tokens[index + 1] if index + 1 < len(tokens) else ""
-    if token in _TYPES and following != "(":
-        return False
-    return not (is_word(before) and before not in CONTROL) and following not in ASSIGNS
+def _jumps(body: Node) -> bool:
+    """Return whether a loop's body leaves the loop, or goes on with it, by a jump of its own."""
+    stack = [body]
+    while stack:
+        node = stack.pop()
+        if isinstance(node, Jump) and node.word in ("break", "continue"):
+            return True
+        if not isinstance(node, For | While | Do | Switch):
+            stack += children(node)
+    return False
 
 
-def _end_of_primary(tokens: list[str], index: int, pairs: dict[int, int]) -> list[int]:
-    """Return where an operand could end: after its name, then after each postfix."""
-    ends = [pairs.get(index, index) + 1]
-    while ends[-1] < len(tokens):
-        end = ends[-1]
-        if tokens[end] in ("(", "[") and end in pairs:
-            ends.append(pairs[end] + 1)
-        elif tokens[end] == "." and end + 1 < len(tokens):
-            ends.append(end + 2)
-        else:
-            break
-    return ends
+def _only_place(tokens: Sequence[Token], part: Sequence[str]) -> tuple[int, int] | None:
+    """Return where some tokens occur among others, if they do so once."""
+    texts = [token.text for token in tokens]
+    first = [i for i in range(len(texts) - len(part) + 1) if texts[i : i + len(part)] == part]
+    return (tokens[first[0]].start, tokens[first[0] + len(part) - 1].end) if len(first) == 1 else None
 
 
-def _of_primary(
-    tokens: list[str], start: int, pairs: dict[int, int], literals: Sequence[str]
-) -> Iterator[Edit]:
-    ends = _end_of_primary(tokens, start, pairs)
-    end = ends[-1]
-    if end - start > 1:
-        for literal in literals:
-            yield start, end, (literal,)
-    for shorter in ends[:-1]:
-        if shorter > start + 1 or tokens[shorter] != "(":
-            yield shorter, end, ()
-    bracket = start if tokens[start] == "(" else start + 1
-    if bracket in pairs and tokens[bracket] == "(":
-        close = pairs[bracket]
-        arguments = _arguments(tokens, bracket, pairs)
-        for low, high in arguments:
-            inner = tuple(tokens[low:high])
-            bare = len(inner) == 1 or _end_of_primary(tokens, low, pairs)[-1] == high
-            yield start, close + 1, inner if bare else ("(", *inner, ")")
-            if bracket == start:
-                yield start, close + 1, inner
-        if bracket != start:
-            for number, (low, high) in enumerate(arguments):
-                yield low - (number > 0), high + (number == 0 and len(arguments) > 1), ()
+def _groups(tokens: Sequence[Token]) -> list[tuple[int, int]]:
+    """Return where conditions of the preprocessor begin and end, with what is between."""
+    groups, open_ = [], []
+    for token in tokens:
+        word = token.text.lstrip("# \t").split(maxsplit=1)[:1] if token.kind == "directive" else []
+        if word in (["if"], ["ifdef"], ["ifndef"]):
+            open_.append(token.start)
+        elif word == ["endif"] and open_:
+            groups.append((open_.pop(), token.end))
+    return groups
 
 
-def _arguments(tokens: list[str], bracket: int, pairs: dict[int, int]) -> list[tuple[int, int]]:
-    """Return from which token to which each argument in a pair of brackets goes."""
-    close = pairs[bracket]
-    arguments: list[tuple[int, int]] = []
-    low = index = bracket + 1
-    while index < close:
-        if index in pairs and pairs[index] > index:
-            index = pairs[index]
-        elif tokens[index] == ",":
-            arguments.append((low, index))
-            low = index + 1
-        index += 1
-    if close > low:
-        arguments.append((low, close))
-    return arguments
+def _merged(spans: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Return spans in order, those that overlap as one."""
+    merged: list[tuple[int, int]] = []
+    for start, end in sorted(spans):
+        if merged and start < merged[-1][1]:
+            merged[-1] = merged[-1][0], max(end, merged[-1][1])
+        elif end > start:
+            merged.append((start, end))
+    return merged
 
 
-def stubs(text: str, number: str = "0.0") -> Iterator[str]:
-    """Yield the text with one function's body replaced by a constant, the last function first."""
-    tokens = tokens_of(text)
-    pairs = partners(tokens)
-    for index in reversed(range(1, len(tokens) - 1)):
-        close = pairs.get(index + 1, -1)
-        body = close + 1
-        if tokens[index + 1] != "(" or tokens[body : body + 1] != ["{"] or body not in pairs:
-            continue
-        kind, name = tokens[index - 1], tokens[index]
-        if not is_word(kind) or kind in CONTROL or name in CONTROL:
-            continue
-        if kind in ("float", "int", "uint", "bool"):
-            value = {"int": "0", "uint": "0u", "bool": "false"}.get(kind, number)
-        elif re.fullmatch(r"[iu]?vec[234]", kind):
-            value = f"{kind}({number})"
-        else:
-            continue
-        stub = tokens_of(f"return {value};")
-        if len(stub) < pairs[body] - body - 1:
-            yield print_tokens([*tokens[: body + 1], *stub, *tokens[pairs[body] :]])
+def _shorter_pragma(line: str) -> Iterator[Edit]:
+    for match in _OPTION.finditer(line):
+        if match[1] not in ("output", "mesh"):
+            yield *match.span(), ""
+        if match[1] == "repeat" and match[2] not in ('"1"', '"2"'):
+            yield from ((*match.span(2), f'"{steps}"') for steps in (1, 2))
 
 
-def parameters_of_functions(text: str) -> Iterator[str]:
-    """Yield the text without one parameter of one function, nor the argument of any call of it."""
-    tokens = tokens_of(text)
-    pairs = partners(tokens)
-    for index in range(1, len(tokens) - 1):
-        name, close = tokens[index], pairs.get(index + 1, -1)
-        defined = tokens[index + 1] == "(" and close > 0 and tokens[close + 1 : close + 2] == ["{"]
-        if (
-            not defined
-            or not is_word(name)
-            or not is_word(tokens[index - 1])
-            or name in _ENTRY_POINTS | CONTROL
-        ):
-            continue
-        count = len(_arguments(tokens, index + 1, pairs))
-        places = [i for i in range(len(tokens) - 1) if tokens[i] == name and tokens[i + 1] == "("]
-        lists = [_arguments(tokens, index + 1, pairs) for index in places if index + 1 in pairs]
-        if any(len(argument_list) != count for argument_list in lists):
-            continue  # overloaded
-        for number in range(count):
-            gone = set()
-            for argument_list in lists:
-                low, high = argument_list[number]
-                gone |= set(range(low - (number > 0), high + (number == 0 and count > 1)))
-            yield print_tokens([token for i, token in enumerate(tokens) if i not in gone])
+# ── reading ──────────────────────────────────────────────────────────────────
 
 
-def headers(text: str) -> Iterator[str]:
-    """Yield the text with one option less in its pragma, one step in place of many, or less annotation."""
-    lines = text.split("\n")
-    for number, line in enumerate(lines):
-        for shorter in _shorter_header(line):
-            yield "\n".join([*lines[:number], shorter, *lines[number + 1 :]])
+_MAX_EXPANDED_TOKENS = 20_000  # of one macro: each candidate is read once
 
 
-def _shorter_header(line: str) -> Iterator[str]:
-    if line.startswith("#pragma"):
-        for match in _OPTION.finditer(line):
-            if match.group(1) not in ("output", "mesh"):
-                yield line[: match.start()] + line[match.end() :]
-            if match.group(1) == "repeat" and match.group(2) not in ('"1"', '"2"'):
-                for steps in ("1", "2"):
-                    yield f'{line[: match.start(2)]}"{steps}"{line[match.end(2) :]}'
-    result = _UNIFORM.match(line)
-    if result is None:
-        return
-    declared, note = line[: result.start(4)], result.group(4).strip().removeprefix("//!").strip()
-    if not note:
-        return
-    yield declared
-    role = re.match(r"\w+(?:\([^)]*\))?", note)
-    if role and role.group() != note:
-        yield f"{declared}  //! {role.group()}"
-    words = re.match(r"(input|file)\b.*", note)
-    if words and note != words.group(1):
-        yield f"{declared}  //! {words.group(1)}"
+@TEXTS.cached(weight=256)
+def read(text: str) -> Symbols:
+    """Return the symbols of a text as its stage has it; treat them as constant.
 
-
-def constants(text: str, values: dict[str, str]) -> Iterator[str]:
-    """Yield the text with one parameter folded in as a constant; ``values`` are GLSL, by name.
-
-    A parameter that is not among them has its default.
+    Macros that double to more than can be read of every candidate are names there.
     """
-    lines = text.split("\n")
-    for number, line in enumerate(lines):
-        match = _UNIFORM.match(line)
-        if match is None or match.group(1).startswith("sampler"):
-            continue
-        kind, name, default = match.group(1), match.group(2), match.group(3)
-        value = values.get(name, default)
-        if value:
-            yield tidy("\n".join([*lines[:number], f"const {kind} {name} = {value};", *lines[number + 1 :]]))
+    sizes: dict[str, int] = {}
+    places: list[tuple[int, int]] = []
+    for token in tokenize(text)[0] if "#define" in text else ():
+        if token.kind == "directive" and token.text.startswith("#define"):
+            name, *body = [word.text for word in tokenize(token.text.removeprefix("#define"))[0]] or [""]
+            sizes[name] = sum(sizes.get(word, 1) for word in body)
+            places.append((token.start, token.end))
+    if max(sizes.values(), default=0) > _MAX_EXPANDED_TOKENS:
+        text = edited(text, [(*place, " " * (place[1] - place[0])) for place in places])
+    stage = "COMPUTE_STAGE" if "#pragma compute" in text else "FRAGMENT_STAGE"
+    return resolve(parse(text, {stage: ""}))
+
+
+# ── what a text lacks ────────────────────────────────────────────────────────
+
+
+def uniforms_of(text: str) -> dict[str, str]:
+    """Return the types of a text's uniforms by their names."""
+    return {one.name: one.type for one in read(text).symbols if one.kind == "uniform"}
 
 
 def undefined(text: str) -> frozenset[str]:
     """Return the variables that are read but never given a value, and the functions that return none.
 
-    What GLSL leaves undefined, drivers fill in as they like, and no failure of it is a
-    driver's. A variable passed to a function may be given its value there.
+    What GLSL leaves undefined, drivers fill in as they like, and no failure of it is a driver's. A variable
+    that a function may write may be given its value there.
     """
-    tokens = tokens_of(text)
-    pairs = partners(tokens)
-    names: set[str] = set()
-    depth = 0
-    for index, token in enumerate(tokens[:-2]):
-        depth += (token == "{") - (token == "}")
-        name, following = tokens[index + 1], tokens[index + 2]
-        if is_line(token) or not is_word(token) or token in CONTROL or not is_word(name):
-            continue
-        if depth and following in (";", ",") and not _is_set(tokens, name, index + 2, pairs):
-            names.add(name)
-        close = pairs.get(index + 2, -1)
-        if not depth and following == "(" and tokens[close + 1 : close + 2] == ["{"]:
-            body = tokens[close + 1 : pairs.get(close + 1, len(tokens))]
-            if token != "void" and not _returns(body):
-                names.add(f"{name}()")
-            arguments = tokens[index + 3 : close]
-            for position, word in enumerate(arguments[:-2]):
-                called = arguments[position + 2]
-                if word == "out" and not _is_set(tokens, called, close + 1, pairs):
-                    names.add(called)
-    return frozenset(names)
+    return Candidates(text).undefined
 
 
-def _is_outermost(tokens: list[str], index: int) -> bool:
-    """Return whether a closing brace ends what is at the text's outermost level."""
-    return tokens[: index + 1].count("{") == tokens[: index + 1].count("}")
-
-
-def _returns(body: list[str]) -> bool:
-    """Return whether a function's own level has a return that hangs on nothing."""
-    depth = 0
-    for index, token in enumerate(body):
-        depth += (token == "{") - (token == "}")
-        if token == "return" and depth == 1 and body[index - 1] in ("{", "}", ";"):
-            return True
-    return False
-
-
-def _is_set(tokens: list[str], name: str, start: int, pairs: dict[int, int]) -> bool:
-    """Return whether a name is assigned to from a token on, within its function, or given to another."""
-    brackets: list[int] = []
-    for index in range(start, len(tokens)):
-        token = tokens[index]
-        if token == "}" and tokens[pairs.get(index, 0) - 1] == ")" and _is_outermost(tokens, index):
-            return False
-        if token == "(":
-            brackets.append(index)
-        elif token == ")" and brackets:
-            brackets.pop()
-        if token != name or tokens[index - 1] == ".":
-            continue
-        end = _end_of_primary(tokens, index, pairs)[-1]
-        if tokens[end : end + 1] == ["="]:
-            return True
-        if brackets and tokens[end : end + 1] in ([","], [")"]) and tokens[index - 1] in ("(", ","):
-            called = tokens[brackets[-1] - 1]
-            if is_word(called) and called not in CONTROL and called not in _TYPES:
-                return True
-    return False
+def undeclared(text: str) -> frozenset[str]:
+    """Return the names that neither a text nor GLSL nor the engine declares."""
+    symbols = read(text)
+    tokens = symbols.tree.tokens
+    names = {tokens[one.token].text for one in symbols.references if one.symbol is None}
+    prefixes = (WIRED, MATCHES, TOWARDS, "previous", "gl_")
+    return frozenset(name for name in names - GLSL_WORDS - GIVEN.keys() if not name.startswith(prefixes))

@@ -14,7 +14,6 @@ test no longer passes. That is not the smallest of all, which would take as many
 from __future__ import annotations
 
 import hashlib
-import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -23,10 +22,18 @@ from typing import TypeVar
 
 from playground.memo import TEXTS
 from playground.sketch.model import Camera
-from playground.verify.reduce import edits
 from playground.verify.reduce.candidate import Finding, Probe
 from playground.verify.reduce.case import Case, Pass, glsl_of
-from playground.verify.reduce.edits import tidy, tokens_of
+from playground.verify.reduce.edits import (
+    Candidates,
+    edited,
+    outputs_of,
+    tidy,
+    token_count,
+    undeclared,
+    undefined,
+    uniforms_of,
+)
 
 # ── delta debugging ──────────────────────────────────────────────────────────
 
@@ -59,106 +66,9 @@ def ddmin(items: Sequence[Item], test: Callable[[list[Item]], bool]) -> list[Ite
     return left
 
 
-# ── a text as a tree of lines and blocks ─────────────────────────────────────
-
-
-Test = Callable[[str], bool]
-"""Says whether a text still fails in the same way."""
-
-Nodes = tuple["Node", ...]
-
-_UNWRAPPED = ("if", "else", "for", "while", "do", "switch", "{")
-
-
-@dataclass(frozen=True)
-class Node:
-    """A line, or a block with its first and last line."""
-
-    head: str
-    body: tuple[Node, ...] | None = None  # None: a single line
-    tail: str = ""
-
-    def lines(self) -> Iterator[str]:
-        """Yield its lines."""
-        yield self.head
-        if self.body is not None:
-            for node in self.body:
-                yield from node.lines()
-            yield self.tail
-
-
-def blocks_of(text: str) -> Nodes:
-    """Return a tidy text's top level."""
-    stack: list[tuple[str, list[Node]]] = [("", [])]
-    for line in filter(str.strip, text.split("\n")):
-        code = line.strip()
-        if code.startswith("}") and len(stack) > 1:
-            head, body = stack.pop()
-            stack[-1][1].append(Node(head, tuple(body), line))
-        elif code.endswith("{") and not code.startswith("#"):
-            stack.append((line, []))
-        else:
-            stack[-1][1].append(Node(line))
-    while len(stack) > 1:  # a brace that is never closed: its lines are single lines
-        head, body = stack.pop()
-        stack[-1][1].extend([Node(head), *body])
-    return tuple(stack[0][1])
-
-
-def text_of_blocks(nodes: Nodes) -> str:
-    """Return the text of a level."""
-    return "".join(f"{line}\n" for node in nodes for line in node.lines())
-
-
-def fewer_lines(text: str, test: Test) -> str:
-    """Return the text with lines and blocks left out at every depth, each level made 1-minimal.
-
-    The whole level goes first, then what is inside each block that stays, so a function
-    that nothing needs costs one try.
-    """
-
-    def holds(nodes: Nodes) -> bool:
-        return test(text_of_blocks(nodes))
-
-    level = tuple(ddmin(blocks_of(text), lambda some: holds(tuple(some))))
-    return text_of_blocks(_inside_each(level, holds))
-
-
-def _inside_each(level: Nodes, holds: Callable[[Nodes], bool]) -> Nodes:
-    """Make each block of a level smaller, one after the other."""
-    index = 0
-    while index < len(level):
-        before, node, after = level[:index], level[index], level[index + 1 :]
-        level = (*before, *_smaller(node, _between(before, after, holds)), *after)
-        index = len(level) - len(after)
-    return level
-
-
-def _between(before: Nodes, after: Nodes, holds: Callable[[Nodes], bool]) -> Callable[[Nodes], bool]:
-    """Return the test of what is between some nodes."""
-    return lambda nodes: holds((*before, *nodes, *after))
-
-
-def _smaller(node: Node, holds: Callable[[Nodes], bool]) -> Nodes:
-    """Return what a block comes down to: what it holds where that does alone, else with less in it."""
-    if node.body is None:
-        return (node,)
-    opening = node.head.strip().split("(")[0].split()[0]
-    if opening in _UNWRAPPED and node.body and holds(node.body):
-        return _inside_each(node.body, holds)
-
-    def filled(body: Nodes) -> bool:
-        return holds((Node(node.head, body, node.tail),))
-
-    body = tuple(ddmin(node.body, lambda some: filled(tuple(some))))
-    return (Node(node.head, _inside_each(body, filled), node.tail),)
-
-
 # ── the search ───────────────────────────────────────────────────────────────
 
 
-_OUTPUTS = re.compile(r'\boutput\s*=\s*"([^"]*)"')
-_UNIFORM = re.compile(r"^\s*uniform\s+(\w+)\s+(\w+)", re.MULTILINE)
 _PLAIN = {
     "time": 0.0,
     "samples": 1,
@@ -210,7 +120,7 @@ class Search:
         self._known: dict[bytes, bool] = {}
         self._start = time.monotonic()
         self._what = ""
-        self._undefined = _undefined(case)
+        self._undefined = self._lacks(case)
 
     @property
     def state(self) -> State:
@@ -246,7 +156,7 @@ class Search:
             raise LimitReached
         if self._most and self.tries >= self._most:
             raise LimitReached
-        if not _undefined(case) <= self._undefined:
+        if not self._lacks(case) <= self._undefined:
             self._known[key] = False
             return False
         self.tries += 1
@@ -291,9 +201,9 @@ class Search:
         """Put something plain in the place of each pass that the target reads, the nearest first."""
         for pass_ in reversed(self.best.live[:-1]):
             if any(live.name == pass_.name for live in self.best.live):
-                for text in _plain_texts(pass_, "0.0" in self._probe.failure.literals):
+                for text in _plain_texts(pass_, 0 in self._probe.failure.numbers):
                     plain = replace(pass_, text=text, variant="", inputs=(), values=(), repeat=0, feedback=())
-                    if len(tokens_of(text)) >= len(tokens_of(pass_.text)):
+                    if token_count(text) >= token_count(pass_.text):
                         break  # it is as plain already
                     if self.holds(self.best.with_pass(plain)):
                         break
@@ -318,9 +228,9 @@ class Search:
             self._first_of(name, self._folded)
 
     def _folded(self, pass_: Pass) -> Iterator[str]:
-        kinds = {name: kind for kind, name in _UNIFORM.findall(pass_.text)}
+        kinds = uniforms_of(pass_.text)
         values = {name: glsl_of(kinds[name], value) for name, value in pass_.live_values}
-        return edits.constants(pass_.text, values)
+        return self._candidates(pass_, "text").constants(values)
 
     def _sizes(self) -> None:
         """Halve the terrain, the passes of other sizes with it, then the picture, as often as it goes."""
@@ -337,32 +247,63 @@ class Search:
         for kind in ("text", "variant"):
             if not getattr(self._pass(name), kind):
                 continue
-            number = "0.0" if "0.0" in self._probe.failure.literals else "1.0"
-            self._first_of(name, partial(_stubs, kind=kind, number=number), kind)
+            self._of_each(name, kind, Candidates.without_unused)
+            self._of_each(name, kind, Candidates.stubs)
             before = ""
             # A body that shrank may free the functions that it called.
             while (text := getattr(self._pass(name), kind)) != before:
                 before = text
-                fewer_lines(text, partial(self._try_lines, name, kind))
+                self._lists(name, kind)
+                self._of_each(name, kind, Candidates.unwrapped)
+                self._of_each(name, kind, Candidates.without_unused)
+
+    def _lists(self, name: str, kind: str) -> None:
+        """Leave out what can be of each list of the text, the outer ones first."""
+        number = 0
+        while True:
+            text = getattr(self._pass(name), kind)
+            lists = Candidates(text).lists()
+            if number >= len(lists):
+                return
+            ddmin(lists[number], partial(self._without, name, kind, text, lists[number]))
+            number += 1
+
+    def _without(
+        self,
+        name: str,
+        kind: str,
+        text: str,
+        items: Sequence[tuple[int, int]],
+        left: Sequence[tuple[int, int]],
+    ) -> bool:
+        """Try a text with these items of a list alone."""
+        gone = set(items).difference(left)
+        return self._try(name, kind, tidy(edited(text, [(*place, "") for place in gone])))
+
+    def _candidates(self, pass_: Pass, kind: str) -> Candidates:
+        return Candidates(getattr(pass_, kind), self._probe.failure.numbers, dict(pass_.given))
+
+    def _of_each(self, name: str, kind: str, texts: Callable[[Candidates], Iterable[str]]) -> None:
+        self._first_of(name, lambda pass_: texts(self._candidates(pass_, kind)), kind)
 
     def _expressions(self, name: str) -> None:
-        literals = self._probe.failure.literals
         again = bool(self._pass(name).variant)
         while again:
             pass_ = self._pass(name)
-            pairs = edits.in_both(pass_.text, pass_.variant, literals)
-            both = (replace(pass_, text=text, variant=other) for text, other in pairs)
+            pairs = self._candidates(pass_, "text").simplified_with(pass_.variant)
+            both = (replace(pass_, text=tidy(text), variant=tidy(other)) for text, other in pairs)
             again = any(self.holds(self.best.with_pass(pair)) for pair in both if pair != pass_)
 
-        def smaller(text: str) -> Iterable[str]:
-            yield from edits.headers(text)
-            yield from edits.parameters_of_functions(text)
-            yield from edits.inlined(text)
-            yield from edits.expressions(text, literals)
+        def smaller(pass_: Pass) -> Iterable[str]:
+            candidates = self._candidates(pass_, "text")
+            yield from candidates.headers()
+            yield from candidates.without_parameter()
+            yield from candidates.inlined()
+            yield from candidates.simplified()
 
-        self._first_of(name, lambda pass_: smaller(pass_.text), between=True)
+        self._first_of(name, smaller, between=True)
         if self._pass(name).variant:
-            self._first_of(name, lambda pass_: smaller(pass_.variant), "variant")
+            self._of_each(name, "variant", Candidates.simplified)
 
     def _first_of(
         self,
@@ -380,7 +321,7 @@ class Search:
             before, start = getattr(self._pass(name), kind), begin
             begin = -1
             for index, text in enumerate(candidates(self._pass(name))):
-                if index >= start and text != before and self._try(name, kind, text):
+                if index >= start and (text := tidy(text)) != before and self._try(name, kind, text):
                     begin = index
                     held += 1
                     break
@@ -391,24 +332,21 @@ class Search:
     def _pass(self, name: str) -> Pass:
         return next(pass_ for pass_ in self.best.passes if pass_.name == name)
 
-    def _try_lines(self, name: str, kind: str, text: str) -> bool:
-        return self._try(name, kind, tidy(text))
-
     def _try(self, name: str, kind: str, text: str) -> bool:
         pass_ = self._pass(name)
         changed = replace(pass_, **{kind: text})  # type: ignore[arg-type]
         return self.holds(self.best.with_pass(changed))
 
-
-def _undefined(case: Case) -> frozenset[str]:
-    """Return what GLSL leaves undefined in each text."""
-    texts = ((pass_.name, text) for pass_ in case.live for text in (pass_.text, pass_.variant) if text)
-    return frozenset(f"{name} {wrong}" for name, text in texts for wrong in _undefined_in(text))
+    def _lacks(self, case: Case) -> frozenset[str]:
+        """Return what GLSL leaves undefined in each text, and the names that nothing declares."""
+        texts = ((pass_.name, text) for pass_ in case.live for text in (pass_.text, pass_.variant) if text)
+        names_all = self._probe.failure.names_all
+        return frozenset(f"{name} {wrong}" for name, text in texts for wrong in _lacking(text, names_all))
 
 
 @TEXTS.cached()
-def _undefined_in(text: str) -> frozenset[str]:
-    return edits.undefined(text)
+def _lacking(text: str, names_all: bool) -> frozenset[str]:
+    return undefined(text) | undeclared(text) if names_all else undefined(text)
 
 
 def _with_settings(case: Case, settings: frozenset[tuple[str, str]]) -> Case:
@@ -421,33 +359,22 @@ def _with_settings(case: Case, settings: frozenset[tuple[str, str]]) -> Case:
     return replace(case, passes=passes, **plain)  # type: ignore[arg-type]
 
 
-def _stubs(pass_: Pass, kind: str, number: str) -> Iterator[str]:
-    return edits.stubs(getattr(pass_, kind), number)
-
-
 def _plain_texts(pass_: Pass, zero: bool) -> Iterator[str]:
     """Yield texts that give the same outputs from nothing: a constant, then a ramp."""
-    match = _OUTPUTS.search(pass_.text)
-    if not pass_.text.startswith("#pragma") and "#pragma" not in pass_.text:
+    if "#pragma" not in pass_.text:
         return
-    outputs = [part.partition(":") for part in (match.group(1) if match else "frame:rgba16f").split(",")]
-    declared = ", ".join(f"{name.strip()}:{form.strip()}" for name, _, form in outputs)
-    kinds = ["vec4" if "rgba" in form else "vec2" if "rg" in form else "float" for _, _, form in outputs]
+    outputs = outputs_of(pass_.text)
+    declared = ", ".join(f"{output.name}:{output.format}" for output in outputs)
+    head = f'#pragma kernel(output = "{declared}")\n'
     ramp = "float(texel.x + 2 * texel.y) / float(size.x)"
     for value in (*(("0.0",) if zero else ()), "1.0", "0.5", ramp):
-        head = f'#pragma kernel(output = "{declared}")\n'
+        values = [value if output.glsl == "float" else f"{output.glsl}({value})" for output in outputs]
         if len(outputs) == 1:
-            cast = value if kinds[0] == "float" else f"{kinds[0]}({value})"
-            yield tidy(f"{head}{kinds[0]} kernel(ivec2 texel) {{ return {cast}; }}")
+            yield tidy(f"{head}{outputs[0].glsl} kernel(ivec2 texel) {{ return {values[0]}; }}")
             continue
-        arguments = ", ".join(
-            f"out {kind} {name.strip()}" for kind, (name, _, _) in zip(kinds, outputs, strict=True)
-        )
-        body = " ".join(
-            f"{name.strip()} = {value if kind == 'float' else f'{kind}({value})'};"
-            for kind, (name, _, _) in zip(kinds, outputs, strict=True)
-        )
-        yield tidy(f"{head}void kernel(ivec2 texel, {arguments}) {{ {body} }}")
+        parameters = ", ".join(f"out {output.glsl} {output.name}" for output in outputs)
+        body = " ".join(f"{output.name} = {of};" for output, of in zip(outputs, values, strict=True))
+        yield tidy(f"{head}void kernel(ivec2 texel, {parameters}) {{ {body} }}")
 
 
 def _half(number: int) -> int:

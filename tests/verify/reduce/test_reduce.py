@@ -407,7 +407,7 @@ def test_ctrl_c_keeps_the_smallest_so_far(sketch, tmp_path, monkeypatch, capsys)
 
     def interrupted(probe, case):
         tried.append(case)
-        if len(tried) == 20:
+        if len(tried) == 14:
             raise KeyboardInterrupt
         return find(probe, case)
 

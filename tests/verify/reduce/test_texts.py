@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import moderngl
 import pytest
 
+from playground.errors import PlaygroundError
 from playground.paths import GLSL
+from playground.shader.header import parse_kernel
+from playground.shader.source import read_source
+from playground.shader.syntax.tokens import tokenize
+from playground.shader.wrap import wrap
 from playground.sketch.techniques import read_kernel
-from playground.verify.reduce import edits
 from playground.verify.reduce.case import unwired, written_out
-from playground.verify.reduce.edits import print_tokens, tidy, tokens_of
-from playground.verify.reduce.search import blocks_of, fewer_lines, text_of_blocks
+from playground.verify.reduce.edits import NUMBERS_WITHOUT_ZERO, Candidates, tidy, undeclared, undefined
 
 from ...cases import each
 
@@ -30,12 +34,15 @@ float kernel(ivec2 texel) {
 """
 
 
+def tokens_of(text: str) -> list[str]:
+    return [token.text.rstrip() for token in tokenize(text)[0]]
+
+
 @pytest.mark.slow
 @each("path", sorted(GLSL.rglob("*.glsl")), ids=lambda p: p.stem)
 def test_tidying_changes_no_token_and_is_done_once(path: Path):
-    text = path.read_text(encoding="utf-8").replace("\\\n", "")
-    tokens = tokens_of(text)
-    assert tokens_of(print_tokens(tokens)) == tokens
+    text = path.read_text(encoding="utf-8")
+    assert tokens_of(tidy(text)) == tokens_of(text)
     assert tidy(tidy(text)) == tidy(text)
 
 
@@ -58,34 +65,35 @@ def test_a_statement_is_a_line():
     assert "};" in lines
 
 
-def test_blocks_are_read_and_written_whole():
+def test_lists_have_every_declaration_and_statement():
     text = tidy(TEXT)
-    assert text_of_blocks(blocks_of(text)) == text
-    function = next(n for n in blocks_of(text) if "kernel" in n.head and n.body is not None)
-    assert [node.head.split()[0] for node in function.body] == ["float", "for", "if", "else", "return"]
+    lists = [[text[slice(*place)].split("\n")[0] for place in items] for items in Candidates(text).lists()]
+    assert [line.split(" ")[0] for line in lists[0]] == [
+        "#pragma", "uniform", "uniform", "const", "struct", "float", "float"
+    ]  # fmt: skip
+    assert ["vec3 to;", "float size;"] in lists
+    assert ["h = h > 3.0 ? sqrt(h) : 1.0 - h;"] in lists
+    assert ["return 2.0 * x;"] in lists
 
 
-def test_lines_go_until_none_can():
-    """What must stay is named; all else goes, a block's braces with what they hold or without."""
-    expected = ["float kernel(ivec2 texel) {", "h -= 1.0;", "return h"]
-    text = fewer_lines(tidy(TEXT), lambda some: all(word in some for word in expected))
-    assert text.split("\n") == [
-        "float kernel(ivec2 texel) {",
-        "        h -= 1.0;",  # no longer in its else; tidy moves it back
-        "    return h + texelFetch(terrain, texel, 0).r;",
-        "}",
-        "",
-    ]
+def test_a_condition_is_one_item_with_what_it_leaves_out():
+    text = "float a;\n#ifdef NO\nfloat b;\n#else\nfloat c;\n#endif\n#define M float d; float e;\nM\n"
+    lists = Candidates(text).lists()
+    assert [text[slice(*place)].split("\n")[0] for place in lists[0]] == [
+        "float a;", "#ifdef NO", "#define M float d; float e;", "M"
+    ]  # fmt: skip
 
 
 def every_edit(text: str) -> list[str]:
-    values = {"gain": "2.5"}
+    candidates = Candidates(text)
     return [
-        *edits.expressions(text),
-        *edits.headers(text),
-        *edits.parameters_of_functions(text),
-        *edits.inlined(text),
-        *edits.constants(text, values),
+        *candidates.simplified(),
+        *candidates.headers(),
+        *candidates.without_parameter(),
+        *candidates.inlined(),
+        *candidates.constants({"gain": "2.5"}),
+        *candidates.unwrapped(),
+        *candidates.without_unused(),
     ]
 
 
@@ -103,7 +111,8 @@ def every_edit(text: str) -> list[str]:
         "h = twice(max(h, 1.5), 0.5);",  # += to =
         "float h = gain;",  # a sign
         "return texelFetch(terrain, texel, 0).r;",
-        "return h + texelFetch(terrain, texel, 0);",  # a swizzle
+        "int i = 0;\n    h += twice(max(h, 1.5), 0.5);\n",  # a loop's first iteration
+        "    h -= 1.0;\n    return",  # a way of an if
         "return 0.0;",
         "if (true)",
         "i < 3;",  # a constant in the place of its name
@@ -134,11 +143,102 @@ def test_edits_come_to_an_end():
 
 def test_zeros_are_not_put_in_where_they_would_be_the_defect():
     text = tidy("float f(float x) { return x / (x + 1.5); }")
-    with_zero = list(edits.expressions(text))
-    without = list(edits.expressions(text, edits.LITERALS_WITHOUT_ZERO))
-    assert any("0.0" in edited for edited in with_zero)
+    without = list(Candidates(text, NUMBERS_WITHOUT_ZERO).simplified())
+    assert any("0.0" in edit for edit in Candidates(text).simplified())
     assert without
-    assert not any("0.0" in edited or " 0" in edited for edited in without)
+    assert not any("0.0" in edit or " 0" in edit for edit in without)
+
+
+@pytest.mark.parametrize(
+    ("body", "gives"),
+    [
+        ("return (a + b) * sin(a);", "return a * sin(a);"),
+        ("return sqrt(a + b) * a;", "return (a + b) * a;"),  # in brackets where it must
+        ("return a - sqrt(b - a);", "return a - (b - a);"),
+        ("return sqrt(a * b) + a;", "return a * b + a;"),
+        ("return -sqrt(-a);", "return - -a;"),
+        ("return float(c.x) * a;", "return c.x * a;"),  # converted by itself
+        ("vec3 v = vec3(a, b, 1.0); return v.y;", "vec3 v = vec3(b); return v.y;"),
+        ("return dot(v, vec2(a, b));", "return dot(v, vec2(a));"),
+        ("v += vec2(a, b); return v.x;", "v += a; return v.x;"),  # a scalar beside a vector
+        ("return TWICE(sqrt(a));", "return TWICE(a);"),  # what a macro is handed
+        ("return TWICE(sqrt(a));", "return sqrt(a);"),
+        ("return c.x > 0 ? a : b;", "return b;"),
+    ],
+)
+def test_a_part_of_its_type_replaces_an_expression(body: str, gives: str) -> None:
+    head = "#define TWICE(x) (2.0 * x)\nfloat f(float a, float b, ivec2 c, vec2 v) {"
+    text = f"{head} {body} }}\n"
+    assert tidy(f"{head} {gives} }}\n") in map(tidy, Candidates(text).simplified())
+
+
+@pytest.mark.parametrize(
+    ("text", "never"),
+    [
+        ("void f(out float x) { x = 1.0; } void g() { float y; f(y); }", "f(0.0)"),
+        ("void g() { float y[3]; y[1 + 1] = 2.0; }", "y[0.0]"),
+        ("void g(float x) { for (int i = 0; i < 9; i++) x += 1.0; }", "; 0)"),
+        ("void g(float x) { for (int i = 0; i < 9; i++) x += 1.0; }", "true"),
+        ("int g(float x) { return int(x) << 2; }", "return x"),
+        ("float g(int x) { return float(x); }", "return x"),  # drivers convert no result
+        ("float g(float x) { return x; } float h() { return g(1.0); }", "g()"),
+    ],
+)
+def test_what_cannot_compile_or_end_is_not_proposed(text: str, never: str) -> None:
+    assert not any(never in tidy(edit) for edit in every_edit(text))
+
+
+UNUSED = """float used(float x) { return x; }
+float idle(float x) { return idle_too(x); }
+const float LEFT = 1.0, RIGHT = 2.0;
+float kernel(ivec2 texel) {
+    float set;
+    set = 3.0;
+    float rest = RIGHT;
+    return used(rest);
+}
+"""
+
+
+def test_what_nothing_reads_goes_at_once():
+    text = tidy(next(iter(Candidates(UNUSED).without_unused())))
+    assert "idle" not in text and "set" not in text and "LEFT" not in text
+    assert "float used(" in text and "RIGHT = 2.0;" in text and "rest = RIGHT;" in text
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name",
+    ["generation/gradient_noise/warping", "lighting/l_dot_n", "sky/ridges", "view/shaded"],
+)
+def test_candidates_compile(ctx: moderngl.Context, tmp_path: Path, name: str) -> None:
+    """Of each kind, and of a hundred simpler expressions, at least 99 in a hundred."""
+    kernel = read_kernel(GLSL / f"{name}.glsl", GLSL)
+    assert kernel is not None
+    candidates = Candidates(written_out(kernel))
+    texts = [
+        *candidates.inlined(),
+        *candidates.stubs(),
+        *candidates.without_unused(),
+        *candidates.unwrapped(),
+    ]
+    simplified = list(candidates.simplified())
+    texts += simplified[:: max(1, len(simplified) // 100)]
+    path = tmp_path / "k.glsl"
+    refused = [text for text in texts if not compiles(ctx, path, text)]
+    assert len(texts) > 100
+    assert len(refused) <= 0.01 * len(texts), refused[0]
+
+
+def compiles(ctx: moderngl.Context, path: Path, text: str) -> bool:
+    try:
+        kernel = parse_kernel("k", read_source(path, (), {str(path.resolve()): text}))
+        assert kernel is not None
+        stages = wrap(kernel, "fragment", 330).stages
+        ctx.program(**{f"{kind}_shader": stage.text for kind, stage in stages.items()}).release()
+    except (PlaygroundError, moderngl.Error):
+        return False
+    return True
 
 
 @pytest.mark.parametrize(
@@ -148,6 +248,8 @@ def test_zeros_are_not_put_in_where_they_would_be_the_defect():
         ("float f() { float x; x = 1.0; return x; }", set()),
         ("float f() { vec2 x; x.y = 1.0; return x.y; }", set()),
         ("float f() { float x; g(x); return x; }", set()),
+        ("void g(float y) {} float f() { float x; g(x); return x; }", {"x"}),
+        ("float f() { float x; float y = modf(1.5, x); return x + y; }", set()),
         ("float f() { float x; if (x > 1.0) return 1.0; return 2.0; }", {"x"}),
         ("float f() { float x; return sqrt(1.0 + x); }", {"x"}),
         ("float f() { g(); }", {"f()"}),
@@ -159,10 +261,15 @@ def test_zeros_are_not_put_in_where_they_would_be_the_defect():
     ],
 )
 def test_what_glsl_leaves_undefined_is_known(text, names):
-    assert edits.undefined(tidy(text)) == names
+    assert undefined(text) == names
 
 
 def test_an_input_without_a_source_keeps_members_and_numbers() -> None:
     text = "uniform sampler2D f;  //! input\nfloat g = wired_f ? texture(f, uv).x + 1.f + wave.f : 0.0;\n"
     expected = text.replace("sampler2D f", "sampler2D no_f").replace("wired_f", "wired_no_f")
     assert unwired(text, "f") == expected.replace("texture(f", "texture(no_f")
+
+
+def test_what_nothing_declares_is_known():
+    text = "uniform float a; float f() { vec3 x = b(c) + towards_a; return x.x + wave(size) + sin(a); }"
+    assert undeclared(text) == {"b", "c", "wave"}

@@ -32,7 +32,7 @@ from playground.shader.syntax.symbols import resolve
 from playground.shader.syntax.types import ExpressionType, ExpressionTypes, conversions
 from playground.sketch.techniques import read_kernel
 
-from ..cases import each
+from ...cases import each
 
 EXPRESSIONS = (
     Assign,
