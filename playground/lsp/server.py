@@ -28,6 +28,7 @@ from playground.lsp.complete import complete_shader, complete_sketch
 from playground.lsp.documents import Checker, Document, Documents, Text
 from playground.lsp.rename import Refused, prepare, references, rename
 from playground.lsp.shader import library_declared, word_at
+from playground.lsp.traced import Tracer
 
 T = TypeVar("T")
 
@@ -57,6 +58,9 @@ class Server(LanguageServer):
             software=software,
             device=device,
         )
+        self.tracer = Tracer(
+            self.documents, self.lock, self._refresh_hints, self._tell, software=software, device=device
+        )
         self._published: dict[Path, str] = {}  # under which URI a file's diagnostics were sent last
         for name, (answer, options) in _FEATURES.items():
             self.feature(name, options)(guarded(self, answer))
@@ -72,7 +76,7 @@ class Server(LanguageServer):
         with suppress(Exception):  # the editor is gone
             self.window_log_message(types.LogMessageParams(types.MessageType.Warning, sentence))
 
-    def on_loop(self, call: Callable[[], None]) -> None:
+    def on_loop(self, call: Callable[[], object]) -> None:
         """Send something from another thread."""
         if self.loop is not None:
             with suppress(RuntimeError):  # it has ended
@@ -99,6 +103,12 @@ class Server(LanguageServer):
     def _tell(self, sentence: str) -> None:
         message = types.ShowMessageParams(types.MessageType.Warning, sentence)
         self.on_loop(lambda: self.window_show_message(message))
+
+    def _refresh_hints(self) -> None:
+        workspace = self.client_capabilities.workspace
+        hints = workspace.inlay_hint if workspace is not None else None
+        if hints is not None and hints.refresh_support:
+            self.on_loop(lambda: self.workspace_inlay_hint_refresh(None))
 
     def _hints(self, document: Document) -> list[Diagnostic]:
         return highlight.unused_names(document, self.documents)
@@ -150,6 +160,7 @@ def serve(port: int | None, *, software: bool = False, device: int | None = None
             server.start_io(sys.stdin.buffer, output)
     finally:
         server.checker.close()
+        server.tracer.close()
 
 
 def guarded(server: Server, answer: Callable[[Server, T], object]) -> Callable[[T], object]:
@@ -184,6 +195,7 @@ def _initialize(server: Server, params: types.InitializeParams) -> None:
 def _initialized(server: Server, params: types.InitializedParams) -> None:
     server.documents.units = server.workspace.position_codec.client_num_units
     server.checker.start()
+    server.tracer.start()
     threading.Thread(target=library_declared, daemon=True).start()  # read once, before it is asked for
     workspace = server.client_capabilities.workspace
     watched = workspace.did_change_watched_files if workspace is not None else None
@@ -200,12 +212,14 @@ def _opened(server: Server, params: types.DidOpenTextDocumentParams) -> None:
     server.checker.changed(
         server.documents.put(document.uri, document.text, document.version, document.language_id)
     )
+    server.tracer.changed()
 
 
 def _changed(server: Server, params: types.DidChangeTextDocumentParams) -> None:
     uri = params.text_document.uri
     text = server.workspace.get_text_document(uri).source
     server.checker.changed(server.documents.put(uri, text, params.text_document.version))
+    server.tracer.changed()
 
 
 def _saved(server: Server, params: types.DidSaveTextDocumentParams) -> None:
@@ -218,6 +232,7 @@ def _closed(server: Server, params: types.DidCloseTextDocumentParams) -> None:
     document = server.documents.remove(params.text_document.uri)
     if document is not None:
         server.checker.closed(document)
+        server.tracer.changed()
 
 
 def _watched(server: Server, params: types.DidChangeWatchedFilesParams) -> None:
@@ -268,8 +283,11 @@ def _hover(server: Server, params: types.HoverParams) -> types.Hover | None:
     if (opened := _at(server, params)) is None:
         return None
     document, at = opened
-    hover = explain.hover_sketch if document.is_toml else explain.hover_shader
-    text = hover(document, server.documents, at)
+    if document.is_toml:
+        text = explain.hover_sketch(document, server.documents, at)
+    else:
+        values = server.tracer.hover(document, at)
+        text = "\n\n".join(filter(None, [values, explain.hover_shader(document, server.documents, at)]))
     return types.Hover(types.MarkupContent(types.MarkupKind.Markdown, text)) if text else None
 
 
@@ -302,6 +320,13 @@ def _highlights(
     if (opened := _at(server, params)) is None or opened[0].is_toml:
         return None
     return highlight.highlights(opened[0], server.documents, opened[1])
+
+
+def _inlay_hints(server: Server, params: types.InlayHintParams) -> list[types.InlayHint] | None:
+    document = server.documents.get(params.text_document.uri)
+    if document is None or document.is_toml or not document.is_ours:
+        return None
+    return server.tracer.hints(document, range(params.range.start.line, params.range.end.line + 1))
 
 
 def _semantic_tokens(server: Server, params: types.SemanticTokensParams) -> types.SemanticTokens | None:
@@ -375,6 +400,7 @@ _FEATURES: dict[str, tuple[Callable[..., object], object]] = {
     types.TEXT_DOCUMENT_DEFINITION: (_definition, None),
     types.TEXT_DOCUMENT_REFERENCES: (_references, None),
     types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: (_highlights, None),
+    types.TEXT_DOCUMENT_INLAY_HINT: (_inlay_hints, None),
     types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: (
         _semantic_tokens,
         types.SemanticTokensRegistrationOptions(highlight.LEGEND, full=True),

@@ -45,12 +45,15 @@ class Editor:
         self.since: dict[str, int] = {}  # how many notifications there were when a text was opened
         self.reader = threading.Thread(target=self._read, daemon=True)
         self.reader.start()
-        general = {"general": {"positionEncodings": list(encodings)}} if encodings else {}
+        capabilities: dict[str, Any] = (
+            {"general": {"positionEncodings": list(encodings)}} if encodings else {}
+        )
+        capabilities |= {"workspace": {"inlayHint": {"refreshSupport": True}}}
         self.initialized = self.ask(
             "initialize",
             processId=None,
             rootUri=folder.as_uri(),
-            capabilities=general,
+            capabilities=capabilities,
             workspaceFolders=[{"uri": folder.as_uri(), "name": "here"}],
         )
         self.send("initialized")
@@ -141,7 +144,7 @@ class Editor:
         """Wait for a file's diagnostics after so many notifications: of a version; ``some``: not none."""
 
         def fits(message: dict[str, Any]) -> bool:
-            params = message["params"]
+            params = message.get("params", {})
             is_about = message["method"] == "textDocument/publishDiagnostics" and params["uri"] == uri
             of_version = version is None or (is_about and params.get("version") == version)
             return is_about and of_version and (bool(params["diagnostics"]) or not some)

@@ -65,7 +65,8 @@ def written(folder: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def editor(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Editor]:
-    with Editor(written(tmp_path_factory.mktemp("lsp") / "work")) as result:
+    folder = tmp_path_factory.mktemp("lsp")
+    with Editor(written(folder / "work"), XDG_STATE_HOME=str(folder / "state")) as result:
         yield result
 
 

@@ -1,0 +1,183 @@
+"""The values of a texel beside the code: hints at lines' ends, iterations in the hover."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from playground.paths import NAME, SKETCHES
+
+from .client import PATIENCE, Editor
+from .test_language import place
+
+KERNEL = """// hill.glsl -- sums.
+// trace: 3 5
+#pragma kernel(output = "height:r32f")
+uniform float gain = 2.0;  //! slider(0, 4)
+float twice(float x) {
+    return 2.0 * x;
+}
+float kernel(ivec2 texel) {
+    float sum = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        sum += twice(float(i)) * gain;
+    }
+    if (texel.x > 2) sum += float(texel.y);
+    return sum * 0.01;
+}
+"""
+SKETCH = """format = 1
+size = 33
+extent = 320.0
+relief = 100.0
+
+[[pass]]
+name = "height"
+use = "./hill"
+set = { gain = 0.5 }
+"""
+
+
+@pytest.fixture(scope="module")
+def traced(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Editor]:
+    folder = tmp_path_factory.mktemp("traced") / "work"
+    folder.mkdir()
+    (folder / "sketch.toml").write_text(SKETCH)
+    (folder / "hill.glsl").write_text(KERNEL)
+    with Editor(folder, XDG_STATE_HOME=str(folder.parent / "state")) as editor:
+        yield editor
+
+
+@pytest.fixture
+def hill(traced: Editor) -> Iterator[str]:
+    """A kernel's URI; what a test opened is closed again."""
+    yield (traced.folder / "hill.glsl").as_uri()
+    for uri in list(traced.versions):
+        traced.close(uri)
+        del traced.versions[uri]
+
+
+def hints_when(editor: Editor, uri: str, fits: Callable[[dict[int, str]], bool]) -> dict[int, str]:
+    """Wait until the hints of a text fit; return that of each line, from 1."""
+    end = time.monotonic() + PATIENCE
+    while not fits(result := hints_now(editor, uri)) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert fits(result), result
+    return result
+
+
+def hints_now(editor: Editor, uri: str) -> dict[int, str]:
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": 999, "character": 0}}
+    result = editor.ask("textDocument/inlayHint", textDocument={"uri": uri}, range=whole)
+    return {hint["position"]["line"] + 1: hint["label"] for hint in result or ()}
+
+
+def opened(editor: Editor, uri: str) -> dict[int, str]:
+    editor.open(uri, KERNEL)
+    return hints_when(editor, uri, bool)
+
+
+def said(editor: Editor) -> list[str]:
+    shown = [note["params"] for note in editor.notes if note["method"] == "window/showMessage"]
+    return [params["message"] for params in shown]
+
+
+def test_a_comment_s_texel_has_its_values_at_the_ends_of_lines(traced: Editor, hill: str) -> None:
+    """In the sketch of its folder the gain is 0.5: the sum of 2 i gain is 6, and 5 is added."""
+    result = opened(traced, hill)
+    assert result[9] == "sum = 0"
+    assert result[10] == "i = 0 | 1 | 2 | 3"
+    assert result[11] == "sum = 0 | 1 | 3 | 6"
+    assert "sum = 11" in result[13] and "true" in result[13]
+    assert result[14] == "→ 0.11"
+    assert result[6] == "→ 0 | 2 | 4 | 6"
+    assert not {1, 2, 3, 4, 12} & result.keys()
+    hover = traced.at("hover", hill, *place(KERNEL, "sum +="))["contents"]["value"]
+    for row in ("sum = 0    kernel, iteration 0", "sum = 6    kernel, iteration 3"):
+        assert row in hover
+    assert said(traced) == []
+
+
+def test_a_line_that_is_typed_in_has_no_value_until_it_is_traced(traced: Editor, hill: str) -> None:
+    opened(traced, hill)
+    before = len(traced.notes)
+    traced.type(hill, KERNEL.replace("    return sum * 0.01;", "    // one more\n    return sum * 0.02;"))
+    soon = hints_now(traced, hill)
+    assert 14 not in soon and 15 not in soon and soon[11] == "sum = 0 | 1 | 3 | 6"
+    hints_when(traced, hill, lambda hints: hints.get(15) == "→ 0.22")
+    traced.note(lambda message: message["method"] == "workspace/inlayHint/refresh", before)
+    traced.type(hill, KERNEL.replace("// trace: 3 5\n", ""))
+    hints_when(traced, hill, lambda hints: not hints)
+
+
+def test_a_text_that_does_not_compile_has_diagnostics_alone(traced: Editor, hill: str) -> None:
+    opened(traced, hill)
+    traced.type(hill, KERNEL.replace("sum = 0.0;", "sum = 0.0"))
+    hints_when(traced, hill, lambda hints: not hints)
+    assert said(traced) == []
+
+
+@pytest.mark.parametrize(
+    ("comment", "words"),
+    [
+        ("// trace: 12", ("'12'", "X Y", "hill.glsl:2")),
+        ("// trace: 99 1", ("99", "33")),
+        ("// trace: 1 1 of nowhere", ("nowhere", "height")),
+        ("// trace: 1 1 in no_such_sketch", ("no_such_sketch",)),
+    ],
+)
+def test_what_cannot_be_traced_is_said_once(
+    traced: Editor, hill: str, comment: str, words: tuple[str, ...]
+) -> None:
+    before = len(traced.notes)
+    traced.open(hill, KERNEL.replace("// trace: 3 5", comment))
+    note = traced.note(lambda message: message["method"] == "window/showMessage", before)
+    assert all(word in note["params"]["message"] for word in words), note["params"]["message"]
+    count = len(said(traced))
+    before = len(traced.notes)
+    traced.type(hill, KERNEL.replace("// trace: 3 5", comment) + "\n// more\n")
+    traced.diagnostics(hill, 2, before)
+    assert len(said(traced)) == count
+
+
+@pytest.mark.slow
+def test_the_window_s_texel_is_shown_in_every_file_of_its_pass(traced: Editor, hill: str) -> None:
+    """The file that a window writes names pass, texel and values; an included file has hints, too."""
+    library = traced.folder / "twice.glsl"
+    library.write_text(
+        "#ifndef TWICE\n#define TWICE\nfloat twice(float x) {\n    return 2.0 * x;\n}\n#endif\n"
+    )
+    head, _, tail = KERNEL.replace("// trace: 3 5\n", '#include "twice.glsl"\n').partition("float twice")
+    text = head + tail.partition("}\n")[2]
+    (traced.folder / "hill.glsl").write_text(text)
+    live: dict[str, Any] = {
+        "format": 1,
+        "sketch": str(traced.folder / "sketch.toml"),
+        "pass": "height",
+        "texel": [0, 4],
+        "iteration": None,
+        "time": 0.0,
+        "values": {"height.gain": 3.0},
+        "later": "keys",
+    }
+    for uri, own in ((hill, text), (library.as_uri(), library.read_text())):
+        traced.open(uri, own)
+    file = traced.folder.parent / "state" / NAME / "traced_texel.json"
+    file.parent.mkdir(parents=True)
+    file.write_text(json.dumps(live))
+    hints_when(traced, hill, lambda hints: hints.get(8) == "sum = 0 | 6 | 18 | 36")
+    hints_when(traced, library.as_uri(), lambda hints: hints.get(4) == "→ 0 | 2 | 4 | 6")
+    file.write_text("{")
+    hints_when(traced, hill, lambda hints: not hints)
+    file.unlink()
+    library.unlink()
+
+
+def test_shipped_texts_have_no_trace() -> None:
+    folder: Path = SKETCHES.parent
+    assert not [path for path in folder.rglob("*.glsl") if "// trace:" in path.read_text(encoding="utf-8")]
