@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import sys
+from types import FrameType
+
 import pytest
 
+from playground import memo
 from playground.paths import GLSL
 from playground.shader.driver_log import library
 from playground.shader.outline import outline
+from playground.shader.syntax import parser
+from playground.sketch.load import load
 
 TEXT = """// A file. float no(int comment);
 #ifndef GUARD
@@ -51,6 +57,37 @@ def test_each_declaration_has_kind_signature_and_comment() -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("const int LOW = 0, HIGH = 1;", ["LOW", "HIGH"]),
+        ("#define random random_at\nfloat random(ivec2 p) { return 1.0; }", ["random", "random"]),
+        (
+            "#define MAKE(name) float name(float x) { return x; }\nMAKE(first)\nMAKE(second)",
+            ["MAKE", "first", "second"],
+        ),
+        (
+            "#ifdef FINE\nfloat fine(float x) {\n#else\nfloat coarse() {\n#endif\nreturn 1.0; }",
+            ["fine", "coarse"],
+        ),
+        (
+            "#ifndef GUARD\n#define GUARD\n#ifndef SIDE\n#define SIDE 8\n#endif\nfloat a;\n#endif",
+            ["SIDE", "a"],
+        ),
+        (
+            "uniform Lights { vec3 sun, sky; };\nbuffer Heights { float all[]; } heights;",
+            ["sun", "sky", "heights"],
+        ),
+        ("struct Wave { float far; } wave, other[2];", ["Wave", "wave", "other"]),
+        ("float a(float x) { return x + ; }\nfloat b() { return 1.0; }\nuniform float c;", ["a", "b", "c"]),
+    ],
+)
+def test_each_name_of_the_top_level_is_listed_as_it_is_written(text: str, names: list[str]) -> None:
+    result = outline(text)
+    assert [item.name for item in result] == names
+    assert all(text.startswith(item.name, item.at) for item in result)
+
+
+@pytest.mark.parametrize(
     "pragma",
     [
         '#pragma kernel(output = "height:r32f", \\\n    about = "https://example.org // it")',
@@ -80,6 +117,25 @@ def test_every_library_function_is_in_outline_of_its_file() -> None:
         if name not in {item.name for item in outline((GLSL / file).read_text(encoding="utf-8"))}
     ]
     assert missing == []
+
+
+@pytest.mark.parametrize("name", ["l_dot_n", pytest.param("october", marks=pytest.mark.slow)])
+def test_a_sketch_is_loaded_without_a_syntax_tree(name: str) -> None:
+    """A large one has tens of thousands of flattened lines, which would take seconds to parse."""
+    memo.clear()
+    parsed: set[str] = set()
+
+    def note(frame: FrameType, event: str, _: object) -> None:
+        if event == "call" and frame.f_code.co_filename == parser.__file__:
+            parsed.add(frame.f_code.co_name)
+
+    sys.setprofile(note)
+    try:
+        sketch = load(name)
+    finally:
+        sys.setprofile(None)
+    assert sketch.graph.kernels
+    assert not parsed
 
 
 def test_the_reference_explains_every_key() -> None:
