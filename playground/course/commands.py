@@ -498,17 +498,17 @@ def translated(
 
 
 def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Engine) -> None:
-    from playground.course.measures import numbers_of
     from playground.course.notebook.build import notebook_text
+    from playground.course.traces import results_of
     from playground.files import write_file
 
     names = {lesson.name for chosen in lessons.values() for lesson in chosen}
     for in_languages in zip(*lessons.values(), strict=True):
-        numbers = numbers_of(engine, in_languages[0])
+        results = results_of(engine, in_languages[0])
         for lesson in in_languages:
             path = folder / lesson.language / f"{lesson.name}.ipynb"
             path.parent.mkdir(parents=True, exist_ok=True)
-            write_file(path, notebook_text(lesson, numbers, names))
+            write_file(path, notebook_text(lesson, results, names))
             print(path)
 
 

@@ -120,6 +120,57 @@ def _code(fence: Fence) -> model.Code:
     return fence.block(model.Code, file=shader(fence), anchor=fence.markdown("anchor"))
 
 
+_TRACED = ("pass", "texel", "iteration", "file", "anchor", "function", "call")
+_NOT_TRACED = ("camera", "steps", "view", "range")
+_LOOPED = ("loop", "variables", "rows", "digits")
+
+
+def _trace(fence: Fence) -> model.Trace:
+    fence.only(model.Trace, *(key for key in STATE if key not in _NOT_TRACED), *_TRACED, *_LOOPED)
+    scene = fence.scene()
+    with fence.located("pass"):
+        path = flatten(scene.sketch).ref(fence.markdown("pass"), scene.sketch.name).path
+    texel = fence.take("texel", list, None)
+    if texel is None or len(texel) != 2 or not all(type(each) is int and each >= 0 for each in texel):
+        expected = "expected texel = [column, row], counted from 0 in the south-west"
+        raise fence.error(expected if texel is None else f"texel = {spell(texel)}: {expected}", "texel")
+    iteration = fence.file.table.get("iteration", [])
+    iteration = iteration if isinstance(iteration, list) else [iteration]
+    if not all(type(each) is int and each >= 0 for each in iteration):
+        expected = "expected a number from 0, or one for each loop around the pass, the outermost first"
+        raise fence.error(f"iteration = {spell(fence.file.table['iteration'])}: {expected}", "iteration")
+    call, digits = fence.take("call", int, 1), fence.take("digits", int, 4)
+    if call < 1:
+        raise fence.error(f"call = {call}: expected the number of a call, from 1", "call")
+    if not 1 <= digits <= 7:
+        raise fence.error(f"digits = {digits}: expected 1 to 7", "digits")
+    loop, variables = fence.take("loop", str, ""), fence.texts("variables")
+    rows = fence.take("rows", list, [])
+    if not all(type(row) is int for row in rows):
+        message = f"rows = {spell(rows)}: expected whole numbers, values of the loop's variable"
+        raise fence.error(message, "rows")
+    if loop and not (variables and rows):
+        raise fence.error('a loop needs variables = ["…"] and rows = […]: the table on paper', "loop")
+    if not loop and (variables or rows):
+        key = "variables" if variables else "rows"
+        raise fence.error(f'{key}: of which loop? give loop = "…", its variable', key)
+    return fence.block(
+        model.Trace,
+        scene=scene,
+        path=path,
+        texel=(texel[0], texel[1]),
+        iteration=tuple(iteration),
+        file=shader(fence),
+        anchor=fence.markdown("anchor"),
+        function=fence.take("function", str, ""),
+        call=call,
+        loop=loop,
+        variables=variables,
+        rows=tuple(rows),
+        digits=digits,
+    )
+
+
 def _break(fence: Fence) -> model.Break:
     fence.only(model.Break, *STATE, "file", "find", "put")
     find, put = (fence.take(key, str, "") for key in ("find", "put"))
@@ -127,13 +178,30 @@ def _break(fence: Fence) -> model.Break:
 
 
 def _question(fence: Fence) -> model.Question:
-    fence.only(model.Question, "right")
+    fence.only(model.Question, "right", "trace", "variable", "step", "points")
     choices, right = fence.texts("choices"), fence.take("right", int, -1)
     if choices and not 0 <= right < len(choices):
         raise fence.error(f"right = {right}: expected the place of a choice, 0 to {len(choices) - 1}")
     if right >= 0 and not choices:
         raise fence.error("right: there are no choices", "right")
-    return fence.block(model.Question, right=right)
+    return fence.block(model.Question, right=right, **_asked(fence, bool(choices)))
+
+
+def _asked(fence: Fence, has_choices: bool) -> dict[str, Any]:
+    """Return the value of a trace that a question asks for, and its points; nothing for another question."""
+    table = fence.file.table
+    if "trace" not in table:
+        for key in ("variable", "step", "points"):
+            if key in table:
+                raise fence.error(f'{key}: of which trace? give trace = "…", the name of a block', key)
+        return {}
+    if has_choices:
+        raise fence.error("choices: the answer is a number of the trace", "choices")
+    points = fence.take("points", int, 1)
+    if not 1 <= points <= 100:
+        raise fence.error(f"points = {points}: expected 1 to 100", "points")
+    asked = model.Asked(fence.markdown("trace"), fence.markdown("variable"), fence.take("step", int, None))
+    return {"of": asked, "points": points}
 
 
 def _measure(fence: Fence) -> model.Measure:
@@ -348,6 +416,7 @@ READERS: dict[str, Callable[[Fence], model.Named]] = {
     "slider": _slider,
     "compare": _compare,
     "code": _code,
+    "trace": _trace,
     "break": _break,
     "question": _question,
     "exercise": read_exercise,

@@ -21,12 +21,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from playground._version import __version__
-from playground.course.book.html import open_command, prose
+from playground.course.book.html import open_command, prose, traced_code, traced_steps
 from playground.course.document import plain
 from playground.course.glossary import linked_term
 from playground.course.library import Labels, labels
-from playground.course.measures import Number, filled, numbers_of
-from playground.course.model import Challenge, Exercise, Lesson, Scene, Task
+from playground.course.measures import filled
+from playground.course.model import Challenge, Exercise, Lesson, Question, Scene, Task, Trace
 from playground.course.scenes import draw
 from playground.course.tasks import (
     answer_text,
@@ -38,6 +38,7 @@ from playground.course.tasks import (
     tasks_of,
     webp_of,
 )
+from playground.course.traces import Results, results_of, trace_of
 from playground.engine.engine import Engine
 from playground.errors import DataError, PlaygroundError, SketchError
 from playground.extras import DISTRIBUTION
@@ -64,10 +65,10 @@ def normalised(text: str) -> str:
 
 @dataclass(frozen=True)
 class Assignment:
-    """One exercise that checks itself, or one picture to match, of one lesson."""
+    """One exercise that checks itself, one picture to match, or one question for a number, of one lesson."""
 
     lesson: Lesson
-    task: Exercise | Challenge
+    task: Exercise | Challenge | Question
     starter: str = ""  # what is handed out in the student's file; "" where values are set
     follows: Exercise | None = None  # the student goes on from what was written there
 
@@ -78,23 +79,29 @@ class Assignment:
 
     @property
     def file(self) -> str:
-        """The file that the student edits: a kernel, or the sketch whose values are set."""
+        """The file that the student edits: a kernel, the sketch whose values are set, or a number."""
+        if isinstance(self.task, Question):
+            return f"{self.name}.txt"
         return f"{self.name}.glsl" if self.task.file else f"{self.name}.toml"
 
     @property
     def sketch_file(self) -> str:
-        """The sketch that shows the exercise; a kernel next to it may not have its name."""
+        """The sketch that shows it, "" for a question; a kernel next to it may not have its name."""
+        if isinstance(self.task, Question):
+            return ""
         return "sketch.toml" if self.task.file else self.file
 
     @property
     def opens(self) -> str:
-        """What opens the exercise in the window, from the hand-out's folder."""
+        """What opens the exercise in the window, from the hand-out's folder; "" for a question."""
+        if isinstance(self.task, Question):
+            return ""
         return self.name if self.task.file else f"{self.name}/{self.file}"
 
     @property
     def points(self) -> int:
         """How many points it has: a picture to match has a score instead."""
-        return self.task.points if isinstance(self.task, Exercise) else 0
+        return 0 if isinstance(self.task, Challenge) else self.task.points
 
     @property
     def title(self) -> str:
@@ -102,7 +109,15 @@ class Assignment:
         if isinstance(self.task, Challenge):
             challenge = labels("handout", self.lesson.language)["challenge"]
             return f"{self.lesson.title}, {challenge.lower()}"
+        if isinstance(self.task, Question):
+            return f"{self.lesson.title}, {question_title(self.task, self.lesson).lower()}"
         return f"{self.lesson.title}, {self.lesson.number_of(self.task)}"
+
+
+def question_title(question: Question, lesson: Lesson) -> str:
+    """Return what a question for a number is called: with its place among those of its lesson."""
+    names = [task.name for task in tasks_of(lesson) if isinstance(task, Question)]
+    return labels("handout", lesson.language)("question_n", n=names.index(question.name) + 1)
 
 
 def assignments_of(lessons: Iterable[Lesson]) -> list[Assignment]:
@@ -120,14 +135,21 @@ def assignments_of(lessons: Iterable[Lesson]) -> list[Assignment]:
     return assignments
 
 
-def _assignment(lesson: Lesson, task: Exercise | Challenge, earlier: Iterable[Assignment]) -> Assignment:
+def _assignment(
+    lesson: Lesson, task: Exercise | Challenge | Question, earlier: Iterable[Assignment]
+) -> Assignment:
+    if isinstance(task, Question):
+        return Assignment(lesson, task)
     starter = starter_text(task)
     for before in earlier:
-        if task.file and task.file == before.task.file and isinstance(before.task, Exercise):
+        if task.file and isinstance(before.task, Exercise) and task.file == before.task.file:
             if normalised(starter) == normalised(answer_text(before.task)):
                 return Assignment(lesson, task, before.starter, before.task)
     return Assignment(lesson, task, starter)
 
+
+NUMBER_KEY = "number"
+"""What stands before the colon behind which a student writes the answer to a question."""
 
 _HEADER = re.compile(r"^\s*\[\[?\s*([A-Za-z_-]+)")
 _LEFT_OUT = ("shot", "preset", "keyframe")
@@ -140,7 +162,10 @@ def student_files(assignment: Assignment) -> dict[str, bytes]:
 
     Raises ``PlaygroundError`` where no such sketch can be made.
     """
-    scene = assignment.task.begin
+    task = assignment.task
+    if isinstance(task, Question):
+        return {assignment.file: _number_file(assignment).encode()}
+    scene = task.begin
     assert scene is not None
     with tempfile.TemporaryDirectory(prefix="handout-") as scratch:
         try:
@@ -150,8 +175,8 @@ def student_files(assignment: Assignment) -> dict[str, bytes]:
             first.unlink()
             path = first.with_name(assignment.sketch_file)
             write_file(path, text)
-            if assignment.task.file:
-                _put_kernel(assignment, path)
+            if task.file:
+                _put_kernel(assignment, task, path)
             _drop_view_settings(path, scene.sketch)
             sketch = load(path)
             save(sketch, _as_begun(sketch, scene.sketch))
@@ -163,6 +188,12 @@ def student_files(assignment: Assignment) -> dict[str, bytes]:
             }
         except OSError as error:
             raise DataError(f"{assignment.name}: no folder could be made for it: {reason(error)}") from None
+
+
+def _number_file(assignment: Assignment) -> str:
+    """Return the file of a question: a student writes the number behind its last colon."""
+    label = labels("handout", assignment.lesson.language)
+    return f"{assignment.title}\n\n{label['number_file']}\n\n{NUMBER_KEY}: \n"
 
 
 def _without_moments(text: str, assignment: Assignment) -> str:
@@ -210,9 +241,9 @@ def _as_begun(sketch: Sketch, begin: Sketch) -> Sketch:
     return edited.with_camera(begin.camera)
 
 
-def _put_kernel(assignment: Assignment, sketch_file: Path) -> None:
+def _put_kernel(assignment: Assignment, task: Task, sketch_file: Path) -> None:
     """Write the starter into the folder and have the sketch use it, through the techniques around it."""
-    folder, kernel = sketch_file.parent, path_of(assignment.task)
+    folder, kernel = sketch_file.parent, path_of(task)
     starter = _includes_from_library(assignment.starter, kernel)
     write_file(folder / f"{assignment.name}.glsl", starter)
     own = _OwnKernel(
@@ -320,7 +351,7 @@ _WIDTH = 480  # pixels of a picture
 class _PageContext:
     lesson: Lesson
     label: Labels
-    numbers: Mapping[str, Number]
+    results: Results
     engine: Engine
     hints: bool
 
@@ -330,7 +361,7 @@ class _PageContext:
 
     def filled(self, markdown: str) -> str:
         """Return a text with the numbers in it."""
-        return filled(markdown, self.numbers, self.lesson.language)
+        return filled(markdown, self.results.numbers, self.lesson.language)
 
     def anchor(self, link: str) -> dict[str, str]:
         """Return the attributes of a link: the page has no other page to lead to."""
@@ -350,13 +381,13 @@ class _PageContext:
 def handout_page(
     lessons: Sequence[Lesson],
     assignments: Sequence[Assignment],
-    numbers: Mapping[str, Mapping[str, Number]],
+    results: Mapping[str, Results],
     engine: Engine,
     *,
     hints: bool = False,
     advance: Callable[[], None] = lambda: None,
 ) -> str:
-    """Return the page as HTML; ``numbers`` are those of each lesson.
+    """Return the page as HTML; ``results`` are those of each lesson.
 
     Raises as ``Engine.render`` does.
     """
@@ -367,9 +398,17 @@ def handout_page(
         tag("p", label["name_line"], label["colon"], tag("span", Markup("&nbsp;")), class_="name"),
     ]
     for lesson in lessons:
-        setting = _PageContext(lesson, label, numbers[lesson.name], engine, hints)
+        setting = _PageContext(lesson, label, results[lesson.name], engine, hints)
+        drawn: set[str] = set()  # traces
         sections.append(tag("h2", f"{label('lesson', n=lesson.number)}{label['colon']}{lesson.title}"))
         for block in lesson.blocks:
+            if isinstance(block, Question) and block.of is not None:
+                trace = trace_of(lesson, block)
+                if trace.name not in drawn:
+                    drawn.add(trace.name)
+                    sections.append(_trace(trace, _answer_lines(trace.file, assignments), setting))
+                sections.append(_question(block, by_place[lesson.name, block.name], setting))
+                advance()
             if isinstance(block, Task):
                 sections.append(_task(block, by_place.get((lesson.name, block.name)), setting))
                 advance()
@@ -384,6 +423,46 @@ def _title(lessons: Sequence[Lesson]) -> str:
     return f"{label['title']}{label['colon']}{', '.join(lesson.title for lesson in lessons)}"
 
 
+def _points(points: int, label: Labels) -> str:
+    return label("points", n=points) if points > 1 else label["point"]
+
+
+def _answer_lines(file: str, assignments: Iterable[Assignment]) -> set[str]:
+    """Return the lines of a file that students are to write themselves."""
+    lines: set[str] = set()
+    for each in assignments:
+        if isinstance(each.task, Task) and each.task.file == file:
+            starter = {line.strip() for line in each.starter.splitlines()}
+            lines |= {line.strip() for line in answer_text(each.task).splitlines()} - starter
+    return lines
+
+
+def _trace(block: Trace, secret: set[str], setting: _PageContext) -> Markup:
+    """Return the lines and the table that questions are about, without what these or exercises ask for."""
+    lines, label = setting.results.traces[block.name], setting.label
+    rows = (replace(line, code="…") if line.code.strip() in secret else line for line in lines.lines)
+    lines = replace(lines, lines=tuple(rows))
+    texel = label("texel_of", x=lines.texel[0], y=lines.texel[1])
+    return tag(
+        "figure",
+        traced_code(lines, label),
+        tag("figcaption", setting.text(block.caption), tag("p", f"glsl/{lines.file}, {texel}")),
+        traced_steps(lines, label) if lines.steps else None,
+        class_="traced",
+    )
+
+
+def _question(question: Question, assignment: Assignment, setting: _PageContext) -> Markup:
+    label, file = setting.label, tag("code", f"{assignment.name}/{assignment.file}")
+    return tag(
+        "section",
+        tag("h3", question_title(question, setting.lesson), tag("small", _points(question.points, label))),
+        setting.text(question.ask),
+        tag("div", tag("p", label["write_number_into"], label["colon"], file), class_="about"),
+        class_="task",
+    )
+
+
 def _task(task: Task, assignment: Assignment | None, setting: _PageContext) -> Markup:
     label = setting.label
     title = label["challenge"]
@@ -392,7 +471,7 @@ def _task(task: Task, assignment: Assignment | None, setting: _PageContext) -> M
         title = label("exercise", n=setting.lesson.number_of(task))
         points = label["no_points"]
         if task.points:
-            points = label("points", n=task.points) if task.points > 1 else label["point"]
+            points = _points(task.points, label)
     hint = None
     if setting.hints and task.hint:
         hint = joined(tag("p", tag("b", label["hint"])), setting.text(task.hint))
@@ -450,8 +529,9 @@ _NOT_IN_A_NAME = re.compile(r"[^\w.-]+")
 
 
 def count_tasks(lessons: Sequence[Lesson]) -> int:
-    """Return how many tasks the page of these lessons has."""
-    return sum(isinstance(block, Task) for lesson in lessons for block in lesson.blocks)
+    """Return how many tasks and questions for a number the page of these lessons has."""
+    blocks = [block for lesson in lessons for block in lesson.blocks]
+    return sum(isinstance(b, Task) or (isinstance(b, Question) and b.of is not None) for b in blocks)
 
 
 def write_handout(
@@ -476,37 +556,38 @@ def write_handout(
         names = ", ".join(lesson.name for lesson in lessons)
         raise SketchError(f"{names}: no exercise here checks itself, so there is no file to hand in")
     top = _NOT_IN_A_NAME.sub("-", path.stem).strip("-. ") or "handout"
-    numbers = {
-        lesson.name: numbers_of(engine, lesson) if _names_numbers(lesson) else {} for lesson in lessons
+    results = {
+        lesson.name: results_of(engine, lesson) if _needs_results(lesson) else Results() for lesson in lessons
     }
     files = {f"{top}/{name}": data for name, data in packed.items()}
     files[f"{top}/README.txt"] = _readme(lessons, assignments, install, "".join(packed)).encode()
     for assignment in assignments:
         for name, data in student_files(assignment).items():
             files[f"{top}/{assignment.name}/{name}"] = data
-    page = handout_page(lessons, assignments, numbers, engine, hints=hints, advance=advance)
+    page = handout_page(lessons, assignments, results, engine, hints=hints, advance=advance)
     files[f"{top}/exercises.html"] = page.encode()
-    first = assignments[0]
-    manifest = {
-        "format": FORMAT,
-        "sketch": f"{top}/{first.name}/{first.sketch_file}",
-        "version": __version__,
-        "shipped": sorted({assignment.task.file for assignment in assignments if assignment.task.file}),
-    }
-    files[MANIFEST] = (json.dumps(manifest, indent=1) + "\n").encode()
+    if drawn := [each for each in assignments if each.sketch_file]:
+        kernels = {each.task.file for each in drawn if isinstance(each.task, Task) and each.task.file}
+        manifest = {
+            "format": FORMAT,
+            "sketch": f"{top}/{drawn[0].name}/{drawn[0].sketch_file}",
+            "version": __version__,
+            "shipped": sorted(kernels),
+        }
+        files[MANIFEST] = (json.dumps(manifest, indent=1) + "\n").encode()
     with replacing(path) as handle, zipfile.ZipFile(handle, "w") as archive:
         for name in sorted(files):
             archive.writestr(zip_entry(name), files[name], zipfile.ZIP_DEFLATED, 9)
     return assignments
 
 
-def _names_numbers(lesson: Lesson) -> bool:
-    """Return whether a task's text names a measure, which then must be computed."""
+def _needs_results(lesson: Lesson) -> bool:
+    """Return whether a task's text names a number, or a question is about a trace: these are computed."""
     return any(
         "{{" in f"{block.ask}{block.hint}{getattr(block, 'alt', '')}"
         for block in lesson.blocks
         if isinstance(block, Task)
-    )
+    ) or any(isinstance(block, Question) and block.of is not None for block in lesson.blocks)
 
 
 def read_wheel(path: Path) -> bytes:
@@ -534,7 +615,7 @@ def _readme(lessons: Sequence[Lesson], assignments: Sequence[Assignment], instal
             "readme",
             title=_title(lessons),
             install="\n".join([lines[0], *(f"   {line.strip()}".rstrip() for line in lines[1:])]),
-            commands="\n".join(f"   playground live {assignment.opens}" for assignment in assignments),
+            commands="\n".join(f"   playground live {each.opens}" for each in assignments if each.opens),
             files="\n".join(f"   {assignment.name}/{assignment.file}" for assignment in assignments),
         ).strip()
         + "\n"

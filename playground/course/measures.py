@@ -299,7 +299,7 @@ MEASURES: dict[str, OfTexture | OfRun] = {
 """Every measure, by the name that lessons use."""
 
 
-_PLACEHOLDER = re.compile(r"\{\{\s*([a-z0-9-]+)\s*\}\}")
+_PLACEHOLDER = re.compile(r"\{\{\s*([a-z0-9-]+(?::[^{}:]+)?(?::-?\d+)?)\s*\}\}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -343,7 +343,7 @@ def filled(markdown: Markdown, numbers: Mapping[str, Number], language: str) -> 
 
 
 def named_in(markdown: Markdown) -> list[str]:
-    """List the measures that a text names."""
+    """List the numbers that a text names: of measures, of questions, of traces as "march:ray:3"."""
     return _PLACEHOLDER.findall(markdown)
 
 

@@ -113,6 +113,25 @@ class Code(Named):
 
 
 @dataclass(frozen=True)
+class Trace(Named):
+    """Lines of a shader with the values of one texel beside them, a loop's by its iterations."""
+
+    scene: Scene | None = None
+    path: str = ""  # of the pass: "height.raw"
+    texel: tuple[int, int] = (0, 0)  # column and row, from the south-west
+    iteration: tuple[int, ...] = ()  # of the repeat, or of the loops around it, from 0; (): the last
+    file: str = ""  # in glsl/
+    anchor: str = ""  # in it, of the lines that are shown
+    function: str = ""  # whose lines they are; "": the kernel's own
+    call: int = 1  # which call of it, from 1
+    loop: str = ""  # variable of the loop that is stepped through; "": none
+    variables: tuple[str, ...] = ()  # columns of the loop's table
+    rows: tuple[int, ...] = ()  # of the table, by the loop's variable
+    digits: int = 4  # significant, of each number
+    caption: Markdown = field(default="", metadata=_NEEDED)
+
+
+@dataclass(frozen=True)
 class Break(Named):
     """A bug put into a shader, to be found and fixed."""
 
@@ -128,9 +147,20 @@ class Break(Named):
 
 
 @dataclass(frozen=True)
-class Question(Named):
-    """Something to answer before the answer is shown."""
+class Asked:
+    """The value of a trace that a question asks for: its figure leaves it out."""
 
+    trace: str  # name of the block
+    variable: str
+    step: int | None = None  # of the loop, by its variable; None: what is there once
+
+
+@dataclass(frozen=True)
+class Question(Named):
+    """Something to answer before the answer is shown: by a choice, or by a number of a trace."""
+
+    of: Asked | None = None
+    points: int = 0  # of a question for a number, which is graded
     ask: Markdown = field(default="", metadata=_NEEDED)
     choices: tuple[Markdown, ...] = field(default=(), metadata=_LISTED)
     right: int = -1  # index of the right choice; -1: there are none
@@ -245,6 +275,16 @@ class Lesson:
     def measures(self) -> tuple[Measure, ...]:
         """Its numbers."""
         return tuple(block for block in self.blocks if isinstance(block, Measure))
+
+    def asked(self, trace: str) -> dict[tuple[str, int | None], str]:
+        """Return the values of a trace that questions ask for, a variable and a step, with the question."""
+        asked = ((question.of, question.name) for question in self.questions_of(trace))
+        return {(of.variable, of.step): name for of, name in asked if of is not None}
+
+    def questions_of(self, trace: str) -> tuple[Question, ...]:
+        """Return the questions about a trace."""
+        questions = (block for block in self.blocks if isinstance(block, Question))
+        return tuple(each for each in questions if each.of is not None and each.of.trace == trace)
 
     def number_of(self, exercise: Exercise) -> int:
         """Return an exercise's number, from 1."""

@@ -269,6 +269,7 @@ BLOCK_SECONDS = {
     "step": 30.0,
     "slider": 30.0,
     "code": 30.0,
+    "trace": 30.0,
     "question": 30.0,
     "break": 120.0,
     "measure": 0.0,
@@ -278,8 +279,11 @@ BLOCK_SECONDS = {
 TASK_SECONDS, KERNEL_SECONDS = 240.0, 360.0
 """[s] What an exercise or a challenge takes besides its words, and one in which a kernel is written."""
 
+NUMBER_SECONDS = 90.0
+"""[s] What a question for a number takes besides its words: it is computed by hand."""
+
 TASKS = ("exercise", "challenge")
-"""The kinds of block that count as exercises, and not as reading."""
+"""The kinds of block that count as exercises, and not as reading; so does a question for a number."""
 
 _READ = {key_of(text) for kind in block_classes(Named) for text in translated_fields(kind)} - {"alt"}
 _UNREAD = re.compile(r"\]\([^)]*\)|[#*`|]+")  # addresses of links, and marks
@@ -311,16 +315,23 @@ def _reading_seconds(piece: Piece) -> float:
     if piece.kind != "fence":
         return _seconds(words_in(piece.text))
     kind = piece.info.partition(" ")[0]
-    if kind in TASKS:
+    if kind in TASKS or _asks_number(piece):
         return 0.0
     return _seconds(_block_words(piece)) + (BLOCK_SECONDS[kind] if kind in READERS else 0.0)
 
 
 def _task_seconds(piece: Piece) -> float:
+    if _asks_number(piece):
+        return _seconds(_block_words(piece)) + NUMBER_SECONDS
     if piece.kind != "fence" or piece.info.partition(" ")[0] not in TASKS:
         return 0.0
     own = KERNEL_SECONDS if "file" in _table(piece) else TASK_SECONDS
     return _seconds(_block_words(piece)) + own
+
+
+def _asks_number(piece: Piece) -> bool:
+    is_question = piece.kind == "fence" and piece.info.partition(" ")[0] == "question"
+    return is_question and "trace" in _table(piece)
 
 
 def _block_words(piece: Piece) -> int:

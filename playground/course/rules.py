@@ -11,13 +11,14 @@ from playground.course import model
 from playground.course.document import formulas, images, links
 from playground.course.glossary import terms
 from playground.course.library import lesson_files
-from playground.course.measures import measured, named_in
+from playground.course.measures import Number, measured, named_in
 from playground.course.model import Challenge, Check, Exercise
 from playground.course.scenes import broken, draw, excerpt
 from playground.course.tasks import (
     Wanted,
     answer,
     answers,
+    asks_number,
     compare,
     judge,
     scene_of,
@@ -29,6 +30,7 @@ from playground.course.tasks import (
     tasks_of,
     wanted_scene,
 )
+from playground.course.traces import numbers_in, trace_of, traced
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundError, nearest
@@ -101,8 +103,10 @@ def broken_rules(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
         if alt and alt == caption:
             yield block.line, f"'{getattr(block, 'name', '')}': alt repeats the caption"
         try:
-            if isinstance(block, model.Code):
+            if isinstance(block, model.Code | model.Trace):
                 excerpt(block.file, block.anchor)
+            elif asks_number(block):
+                trace_of(lesson, block)
             elif isinstance(block, model.Break):
                 broken(block)
         except PlaygroundError as error:
@@ -111,6 +115,7 @@ def broken_rules(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
 
 def wrong_pictures(engine: Engine, lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     """Yield (line, sentence) of what only drawing shows: bugs not seen, numbers not as claimed, bad tasks."""
+    yield from _wrong_traces(engine, lesson)
     for block in lesson.blocks:
         try:
             if isinstance(block, model.Break) and block.scene:
@@ -125,6 +130,30 @@ def wrong_pictures(engine: Engine, lesson: model.Lesson) -> Iterator[tuple[int, 
                     yield block.line, f"measure '{block.name}': {value:g} is not between {low:g} and {high:g}"
         except PlaygroundError as error:
             yield block.line, error.diagnostics[0].message
+
+
+def _wrong_traces(engine: Engine, lesson: model.Lesson) -> Iterator[tuple[int, str]]:
+    """Yield (line, sentence) of traces that cannot be made, and of values that they do not have."""
+    numbers: dict[str, Number] = {}
+    for block in lesson.blocks:
+        if not isinstance(block, model.Trace):
+            continue
+        try:
+            lines = traced(engine, lesson, block)
+        except PlaygroundError as error:
+            yield block.line, error.diagnostics[0].message
+            continue
+        numbers |= numbers_in(lines)
+        for question in lesson.questions_of(block.name):
+            try:
+                lines.answer(question)
+            except PlaygroundError as error:
+                yield question.line, error.diagnostics[0].message
+    traces = {name.partition(":")[0] for name in numbers}
+    for block in lesson.blocks:
+        for name in (name for text in model.texts_of(block) for name in named_in(text)):
+            if name.partition(":")[0] in traces and ":" in name and name not in numbers:
+                yield block.line, f"{{{{{name}}}}}: the trace has no such number{nearest(name, numbers)}"
 
 
 def visible(frame: Frame, other: Frame) -> bool:
@@ -158,7 +187,7 @@ def _kinds(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     target: tuple[tuple[str, tuple[type[model.Block], ...]], ...] = (
         ("a step or a slider", (model.Steps, model.Slider)),
         ("a compare or a question", (model.Compare, model.Question)),
-        ("a code", (model.Code,)),
+        ("a code or a trace", (model.Code, model.Trace)),
         ("a measure", (model.Measure,)),
     )
     tasks = tasks_of(lesson)
@@ -189,7 +218,9 @@ def _sections(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
 
 
 def _references(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
-    measures = {measure.name for measure in lesson.measures}
+    named = {measure.name for measure in lesson.measures}
+    named |= {block.name for block in lesson.blocks if asks_number(block)}
+    traces = {block.name for block in lesson.blocks if isinstance(block, model.Trace)}
     targets = {"lesson": lesson_files(), "sketch": shipped_sketches(), "term": list(terms())}
     linked: set[str] = set()
     texts = [(1, lesson.title), (1, lesson.goal)]
@@ -198,8 +229,11 @@ def _references(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
         for latex in formulas(text):
             yield from ((line, message) for message in _formula(latex))
         for name in named_in(text):
-            if name not in measures:
-                yield line, f"{{{{{name}}}}}: there is no measure of that name"
+            trace, colon, _ = name.partition(":")
+            if colon and trace not in traces:
+                yield line, f"{{{{{name}}}}}: there is no trace '{trace}'{nearest(trace, traces)}"
+            elif not colon and name not in named:
+                yield line, f"{{{{{name}}}}}: there is no measure of that name{nearest(name, named)}"
         for address in images(text):
             yield line, f"an image of '{address}': pictures are blocks of their own"
         for address in links(text):

@@ -304,6 +304,7 @@ PICTURES: dict[type[model.Block], Callable[[Any], Iterator[Picture]]] = {
     model.Slider: _series,
     model.Compare: _series,
     model.Code: _none,
+    model.Trace: _none,
     model.Break: _correct_and_broken,
     model.Question: _none,
     model.Exercise: _single,
@@ -357,6 +358,12 @@ class Excerpt:
     file: str  # in glsl/
     line: int  # of the first of them, from 1
     text: str  # without the indentation that all have
+    numbers: tuple[int, ...] = ()  # of its lines, from 1: the marks of other anchors are left out
+
+    @property
+    def lines(self) -> list[tuple[int, str]]:
+        """Its lines with their numbers in the file."""
+        return list(zip(self.numbers, self.text.split("\n"), strict=True))
 
 
 def excerpt(file: str, anchor: str, text: str | None = None) -> Excerpt:
@@ -390,9 +397,13 @@ def anchors(file: str, text: str) -> dict[str, Excerpt]:
             raise SketchError(f"anchor '{name}' ends before it begins", file=GLSL / file, line=number)
         else:
             first = open_at.pop(name)
-            inside = [each for each in lines[first : number - 1] if not _MARK.match(each)]
-            marked = textwrap.dedent("\n".join(each.rstrip() for each in inside))
-            excerpts[name] = Excerpt(file, first + 1, marked.strip("\n"))
+            inside = [n for n in range(first, number - 1) if not _MARK.match(lines[n])]
+            while inside and not lines[inside[0]].strip():
+                inside.pop(0)
+            while inside and not lines[inside[-1]].strip():
+                inside.pop()
+            marked = textwrap.dedent("\n".join(lines[n].rstrip() for n in inside))
+            excerpts[name] = Excerpt(file, first + 1, marked, tuple(n + 1 for n in inside))
     for name, number in open_at.items():
         raise SketchError(f"anchor '{name}' has no end", file=GLSL / file, line=number)
     return excerpts

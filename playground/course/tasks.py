@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from playground.course.library import HERE, Labels, Said, decimal, in_language, labels
 from playground.course.measures import NoNumberError, measured, spelled
-from playground.course.model import Block, Challenge, Check, Exercise, Lesson, Scene, Task
+from playground.course.model import Block, Challenge, Check, Exercise, Lesson, Question, Scene, Task
 from playground.course.scenes import draw
 from playground.engine.engine import Engine
 from playground.errors import Diagnostic, ParameterError, PlaygroundError, nearest
@@ -36,9 +36,14 @@ def checks_itself(block: Block) -> TypeGuard[Exercise | Challenge]:
     return isinstance(block, Challenge) or (isinstance(block, Exercise) and bool(block.checks))
 
 
-def tasks_of(lesson: Lesson) -> list[Exercise | Challenge]:
-    """List a lesson's exercises that have checks, and its challenges, in its order."""
-    return [block for block in lesson.blocks if checks_itself(block)]
+def asks_number(block: Block) -> TypeGuard[Question]:
+    """Return whether a block is a question for a number of a trace."""
+    return isinstance(block, Question) and block.of is not None
+
+
+def tasks_of(lesson: Lesson) -> list[Exercise | Challenge | Question]:
+    """List a lesson's exercises with checks, its challenges and its questions for a number, in its order."""
+    return [block for block in lesson.blocks if checks_itself(block) or asks_number(block)]
 
 
 EXERCISES = HERE / "exercises"

@@ -79,6 +79,28 @@ anchor  = "kernel"
 caption = "All of it."
 ```
 
+```trace height
+sketch    = "diamond_square_steps"
+pass      = "height.raw"
+texel     = [2, 2]
+iteration = 1
+file      = "generation/diamond_square/raw.glsl"
+anchor    = "height"
+loop      = "i"
+variables = ["total", "count"]
+rows      = [0, 1, 2, 3]
+caption   = "The centre, from the corners."
+```
+
+```question corners
+trace    = "height"
+variable = "total"
+step     = 3
+points   = 2
+ask      = "The {{height:count:3}} corners: 0.2, 0.9, 0.6, 0.4. What is `total` at step 3?"
+answer   = "Their sum."
+```
+
 ```break fault
 sketch = "diamond_square_steps"
 pixels = [96, 96]
@@ -163,6 +185,15 @@ labels  = ["uni", "inégal"]
 
 ```code mean
 caption = "En entier."
+```
+
+```trace height
+caption = "Le centre, depuis les coins."
+```
+
+```question corners
+ask    = "Les {{height:count:3}} coins : 0,2, 0,9, 0,6, 0,4. Combien vaut `total` au pas 3 ?"
+answer = "Leur somme."
 ```
 
 ```break fault

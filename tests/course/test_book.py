@@ -22,10 +22,10 @@ from playground.course.document import plain
 from playground.course.figures import thesis_figures
 from playground.course.glossary import terms
 from playground.course.library import labels
-from playground.course.measures import numbers_of
 from playground.course.model import Break, Exercise, Question
 from playground.course.notebook.build import notebook_text
 from playground.course.scenes import draw, pictures_of
+from playground.course.traces import Results, results_of
 from playground.errors import DataError
 
 VOID = {"img", "input", "br", "meta", "link", "hr", "source"}
@@ -116,7 +116,7 @@ def test_a_link_to_a_lesson_that_is_not_in_the_book_is_text(tmp_path, make_lesso
     page = Page(tmp_path / "book/en/small.html")
     assert "see the last, that" in page.text
     assert "small.html" in page.addresses and "fourier.html" not in page.addresses
-    assert "[the last](small.ipynb), that" in notebook_text(linked, numbers_of(engine, linked), ["small"])
+    assert "[the last](small.ipynb), that" in notebook_text(linked, results_of(engine, linked), ["small"])
 
 
 def test_the_cover_leads_into_each_language(book):
@@ -212,8 +212,8 @@ def test_answers_are_folded_and_readable_without_script(book):
     page = Page(book / "en/small.html")
     text = (book / "en/small.html").read_text(encoding="utf-8")
     assert (
-        len(page.all("details")) == 8
-    )  # contents; hint and fix of the bug, an answer, three solutions, a hint
+        len(page.all("details")) == 9
+    )  # contents; hint and fix of the bug, two answers, three solutions, a hint
     assert not any("open" in attributes for attributes in page.all("details"))
     assert text.count("<li") >= 6 + 3 + 2  # iterations, values, variants
     assert "total / count" in page.text and "total / 8.0" in page.text
@@ -333,7 +333,7 @@ def test_a_picture_that_is_as_good_as_black_is_known(tmp_path):
 def test_series_opens_on_first_non_blank_picture(lesson, french):
     def opens(blank):
         setting = LessonContext(
-            lesson, labels("book", "en"), {}, lambda p: p.name, lambda link: {}, (), blank
+            lesson, labels("book", "en"), Results(), lambda p: p.name, lambda link: {}, (), blank
         )
         return re.search(r'data-opens="(\d+)"', block_html(lesson.named["turns"], setting))[1]
 

@@ -24,6 +24,7 @@ from playground.course.book.live import (
 from playground.course.library import labels
 from playground.course.read import read_lesson
 from playground.course.scenes import bug_region, pictures_in, spelled_value
+from playground.course.traces import Results
 from playground.publish.web.blobs import packed_json
 from playground.publish.web.parameter_data import row as row_data
 from playground.publish.web.plan import sketch_data
@@ -262,7 +263,7 @@ def test_only_live_blocks_can_be_started(book, lesson, french):
 
 
 def test_a_page_without_live_blocks_is_as_before(lesson):
-    setting = LessonContext(lesson, {}, {}, lambda picture: "", lambda link: {})
+    setting = LessonContext(lesson, {}, Results(), lambda picture: "", lambda link: {})
     assert setting.started(lesson.named["land"]) == {"data_block": None}
 
 

@@ -23,13 +23,13 @@ from PIL import Image
 from playground.course.book.live import widget_page
 from playground.course.glossary import terms
 from playground.course.library import labels, lesson_files
-from playground.course.measures import numbers_of
 from playground.course.model import Figure, Prose
 from playground.course.notebook import lesson as notebook_lesson
 from playground.course.notebook.build import notebook_text
 from playground.course.notebook.lesson import NotebookLesson, controls_of, scene_at
 from playground.course.read import read_lesson
 from playground.course.scenes import BugRegion, broken, draw
+from playground.course.traces import Results, results_of
 from playground.errors import SketchError
 from playground.publish.notebook.engine_thread import release_engine
 from playground.publish.notebook.export import LiveFigures, TerrainHTMLExporter
@@ -197,12 +197,12 @@ def test_a_name_that_is_not_there(opened):
 
 def test_the_cells_are_the_lesson(lesson, french, engine):
     for item in (lesson, french):
-        cells = json.loads(notebook_text(item, numbers_of(engine, item)))["cells"]
+        cells = json.loads(notebook_text(item, results_of(engine, item)))["cells"]
         code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
         text = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown")
         assert 'lesson.show("turns")' in code and 'lesson.measure("spread")' in code
         assert "{{" not in text and "lesson:small" not in text
-        assert text.count("<details>") == 7
+        assert text.count("<details>") == 8
         definition, section = (
             terms()["texel"].definition(item.language),
             labels("book", item.language)["glossary"],
@@ -249,7 +249,7 @@ def test_lines_to_fix_are_in_the_cell_as_they_are_in_the_file(lesson, engine, mo
     """A backslash stays one."""
     region = BugRegion(correct="", broken=text, before="", after="", indent="")
     monkeypatch.setattr("playground.course.notebook.build.bug_region", lambda _: region)
-    cells = json.loads(notebook_text(lesson, numbers_of(engine, lesson)))["cells"]
+    cells = json.loads(notebook_text(lesson, results_of(engine, lesson)))["cells"]
     (cell,) = [cell for cell in cells if "lesson.fix(" in "".join(cell["source"])]
     call = ast.parse("".join(cell["source"])).body[0].value
     assert ast.literal_eval(call.args[1]) == f"\n{text}\n"
@@ -258,7 +258,7 @@ def test_lines_to_fix_are_in_the_cell_as_they_are_in_the_file(lesson, engine, mo
 def test_code_in_prose_is_the_translation_s(french, engine):
     """As it stands there: its indentation is what makes it code."""
     code = Prose(1, "    in English", "code", 0, "    en français")
-    cells = json.loads(notebook_text(replace(french, blocks=(code,)), {}))["cells"]
+    cells = json.loads(notebook_text(replace(french, blocks=(code,)), Results()))["cells"]
     assert ["".join(cell["source"]) for cell in cells[2:3]] == ["    en français"]
 
 
@@ -270,7 +270,7 @@ def test_a_notebook_runs_from_end_to_end(engine):
 
     for language in ("en", "fr"):
         lesson = read_lesson("diamond_square", language)
-        notebook = nbformat.reads(notebook_text(lesson, numbers_of(engine, lesson)), as_version=4)
+        notebook = nbformat.reads(notebook_text(lesson, results_of(engine, lesson)), as_version=4)
         NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
         shows = [cell for cell in notebook.cells if cell.cell_type == "code" and "lesson.show" in cell.source]
         assert len(shows) >= 5

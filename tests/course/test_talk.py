@@ -193,8 +193,8 @@ def test_the_beats_of_a_small_lesson(lesson: Lesson) -> None:
     beats = beats_of(lesson)
     kinds = [beat.kind for beat in beats]
     assert kinds[:4] == ["title", "text", "figure", "text"]
-    assert [k for k, before in zip(kinds, [None, *kinds], strict=False) if k != before][3:10] == [
-        "text", "step", "sweep", "compare", "code", "broken", "hint",
+    assert [k for k, before in zip(kinds, [None, *kinds], strict=False) if k != before][3:13] == [
+        "text", "step", "sweep", "compare", "code", "board", "question", "answer", "broken", "hint",
     ]  # fmt: skip
     title, text = beats[0], beats[1]
     assert title.still == text.still and title.still is not None and title.still.block == "land", "ahead"

@@ -37,6 +37,7 @@ from playground.course.tasks import (
     starter_text,
     tasks_of,
 )
+from playground.course.traces import results_of
 from playground.errors import SketchError
 from playground.paths import GLSL
 from playground.shader.source import read_text
@@ -165,7 +166,7 @@ def test_what_is_wrong_in_a_challenge_is_said_in_one_sentence(task, before, afte
 
 def test_an_exercise_without_work_is_as_before(make_lesson):
     lesson = make_lesson()
-    assert tasks_of(lesson) == [] and lesson.named["first"].points == 0
+    assert [task.name for task in tasks_of(lesson)] == ["corners"] and lesson.named["first"].points == 0
 
 
 @pytest.mark.parametrize("body", [KERNEL, VALUES])
@@ -431,9 +432,9 @@ def test_values_are_checked_and_a_picture_is_matched(opened):
         challenge.exercise("first")
 
 
-def test_the_cells_hold_the_starter_and_the_check(task, opened):
+def test_the_cells_hold_the_starter_and_the_check(task, opened, engine):
     lesson = task(KERNEL).lesson
-    text = notebook_text(lesson, {})
+    text = notebook_text(lesson, results_of(engine, lesson))
     code = ["".join(cell["source"]) for cell in json.loads(text)["cells"] if cell["cell_type"] == "code"]
     asked = []
     fake = type("L", (), {"check": lambda self, *value: asked.append(value)})()
@@ -441,12 +442,14 @@ def test_the_cells_hold_the_starter_and_the_check(task, opened):
     exec(cell, {"lesson": fake})
     assert asked == [("third", "\n" + starter_text(lesson.named["third"]))]
     assert 'lesson.exercise("third")' in code
-    values = notebook_text(task(VALUES).lesson, {})
+    lesson = task(VALUES).lesson
+    values = notebook_text(lesson, results_of(engine, lesson))
     assert "{'height.smoothing': 0.5}" in values
 
 
-def test_a_term_is_bold(task):
-    assert "**[texel](#Glossary" in notebook_text(task(VALUES).lesson, {}).replace("\\", "")
+def test_a_term_is_bold(task, engine):
+    lesson = task(VALUES).lesson
+    assert "**[texel](#Glossary" in notebook_text(lesson, results_of(engine, lesson)).replace("\\", "")
 
 
 @pytest.mark.slow

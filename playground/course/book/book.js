@@ -90,6 +90,75 @@
     overlay(true);
   }
 
+  // A trace: the values of one step beside the code, chosen by a slider; its row of the table is marked.
+  for (const figure of document.querySelectorAll("figure.traced")) {
+    if (!figure.dataset.steps) continue;
+    const labels = JSON.parse(figure.dataset.steps), rows = [...figure.querySelectorAll("tr[data-step]")];
+    const beside = [...figure.querySelectorAll("[data-at]")], onPaper = beside.map((each) => each.textContent);
+    const range = make("input", { type: "range", min: 0, max: labels.length - 1, step: 1 });
+    const output = make("output");
+    const back = make("button", { type: "button", textContent: "‹", title: words.backward });
+    const on = make("button", { type: "button", textContent: "›", title: words.forward });
+    back.setAttribute("aria-label", words.backward);
+    on.setAttribute("aria-label", words.forward);
+    range.setAttribute("aria-label", figure.dataset.name);
+    const show = (index) => {
+      for (const each of beside) each.textContent = JSON.parse(each.dataset.at)[index];
+      const row = rows.find((each) => Number(each.dataset.step) === index);
+      for (const each of rows) {
+        if (each === row) each.setAttribute("aria-current", "step"); else each.removeAttribute("aria-current");
+      }
+      range.value = index;
+      const values = beside.map((each) => each.textContent).filter((text) => text && text !== labels[index]);
+      range.setAttribute("aria-valuetext", `${labels[index]}: ${values.join("; ")}`);
+      output.textContent = labels[index];
+      back.setAttribute("aria-disabled", index === 0);
+      on.setAttribute("aria-disabled", index === labels.length - 1);
+    };
+    const at = () => Number(range.value);
+    range.addEventListener("input", () => show(at()));
+    back.addEventListener("click", () => show(Math.max(at() - 1, 0)));
+    on.addEventListener("click", () => show(Math.min(at() + 1, labels.length - 1)));
+    for (const row of rows) row.addEventListener("click", () => show(Number(row.dataset.step)));
+    figure.querySelector(".beside").after(make("div", { className: "controls" }, back, range, on, output));
+    figure.addEventListener("reveal", () => show(at()));
+    addEventListener("beforeprint", () => beside.forEach((each, i) => { each.textContent = onPaper[i]; }));
+    addEventListener("afterprint", () => show(at()));
+    show(0);
+  }
+
+  // A question for a number of a trace: right within its tolerance; then, or where its answer is unfolded,
+  // the figure shows what it left out.
+  const answered = new Set();
+  const reveal = (name) => {
+    answered.add(name);
+    for (const each of document.querySelectorAll("[data-asked][data-full]")) {
+      if (!each.dataset.asked.split(" ").every((one) => answered.has(one))) continue;
+      if (each.dataset.at) each.dataset.at = each.dataset.full;
+      else each.textContent = each.matches("td") ? each.dataset.full : JSON.parse(each.dataset.full)[0];
+      each.removeAttribute("data-asked");
+      each.closest("figure").dispatchEvent(new Event("reveal"));
+    }
+  };
+  for (const field of document.querySelectorAll(".number")) {
+    const input = field.querySelector("input"), verdict = field.querySelector(".verdict");
+    const section = field.closest("section");
+    const check = () => {
+      const text = input.value.replace(/[\s_]/g, "").replace("−", "-").replace(",", ".");
+      const is = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text) ? Number(text) : NaN;
+      const { value, tolerance } = input.dataset;
+      const right = Math.abs(is - Number(value)) <= Number(tolerance) * (1 + 1e-9);
+      verdict.textContent = Number.isNaN(is) ? field.dataset.unread : right ? field.dataset.right : field.dataset.wrong;
+      verdict.className = `verdict ${right ? "right" : "wrong"}`;
+      if (right) reveal(section.id);
+    };
+    field.hidden = false;
+    field.querySelector("button").addEventListener("click", check);
+    input.addEventListener("keydown", (event) => { if (event.key === "Enter") check(); });
+    // Not by "toggle": printing unfolds all answers as well.
+    section.querySelector("details.answer > summary")?.addEventListener("click", () => reveal(section.id));
+  }
+
   // A live figure: its scripts come when one is started, and then serve all figures of the page.
   let runtime = null;
   const added = (element) => new Promise((resolve, reject) => {

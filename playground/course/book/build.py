@@ -41,9 +41,9 @@ from playground.course.document import plain
 from playground.course.figures import HERO, FigurePicture, Hero, ThesisFigure, hero_of, thesis_figures
 from playground.course.glossary import alphabetical
 from playground.course.library import labels
-from playground.course.measures import Number, numbers_of
 from playground.course.model import Lesson, Scene
 from playground.course.scenes import Picture, Sketches, draw, pictures_of
+from playground.course.traces import Results, results_of
 from playground.engine.context import context_info
 from playground.engine.engine import Engine
 from playground.errors import DataError
@@ -235,7 +235,7 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
     _begin(build.folder)
     build.album.draw(engine, build.names, advance)
     one_language = next(iter(build.lessons.values()))
-    numbers = {lesson.name: numbers_of(engine, lesson) for lesson in one_language}
+    results = {lesson.name: results_of(engine, lesson) for lesson in one_language}
     live = live_book(one_language, engine)
     books = [
         Book(
@@ -249,7 +249,7 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
         for language, lessons in build.lessons.items()
     ]
     texts = {
-        f"{book.language}/{name}": text for book in books for name, text in _pages(build, book, numbers, live)
+        f"{book.language}/{name}": text for book in books for name, text in _pages(build, book, results, live)
     }
     texts["index.html"] = cover_page(books, _cover(build, one_language[0], PICTURES))
     files = {name: text.encode() for name, text in (texts | live.files).items()}
@@ -261,13 +261,13 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
 
 
 def _pages(
-    build: Build, book: Book, numbers: dict[str, dict[str, Number]], live: LiveBook
+    build: Build, book: Book, results: Mapping[str, Results], live: LiveBook
 ) -> Iterator[tuple[str, str]]:
     covers: dict[str, Markup] = {}
     entries: list[Entry] = []
     folder, album = f"../{PICTURES}", build.album
     for lesson in book.lessons:
-        setting = _setting(build, book, lesson, numbers[lesson.name], live)
+        setting = _setting(build, book, lesson, results[lesson.name], live)
         entries += lesson_entries(lesson, setting)
         hero = build.heroes.get(lesson.name)
         shown = _cover(build, lesson, folder, alt=hero.alt[lesson.language]) if hero else None
@@ -284,9 +284,7 @@ def _pages(
         yield f"{FIGURES}.html", gallery_page(book, gallery_html(book, build.figures, address))
 
 
-def _setting(
-    build: Build, book: Book, lesson: Lesson, numbers: dict[str, Number], live: LiveBook
-) -> LessonContext:
+def _setting(build: Build, book: Book, lesson: Lesson, results: Results, live: LiveBook) -> LessonContext:
     """Return what the blocks of a lesson are written with."""
     album = build.album
 
@@ -296,7 +294,7 @@ def _setting(
     return LessonContext(
         lesson,
         book.label,
-        numbers,
+        results,
         lambda picture: f"../{PICTURES}/{file_of(picture)}",
         book.anchor,
         live.blocks[lesson.name],

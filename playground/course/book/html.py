@@ -6,7 +6,8 @@ to be unfolded. The script turns them into sliders and swipes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+import json
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -16,10 +17,11 @@ from markdown_it.token import Token
 
 from playground.course import model
 from playground.course.document import parser, plain
-from playground.course.library import SOURCE, Labels
-from playground.course.measures import Number, filled
+from playground.course.library import SOURCE, Labels, decimal
+from playground.course.measures import filled
 from playground.course.scenes import Picture, bug_region, excerpt, pictures_in, spelled_value
 from playground.course.tasks import starter_text
+from playground.course.traces import Beside, Results, TracedLines, text_of
 from playground.markup import Markup, joined, tag
 from playground.memo import INTERFACE
 
@@ -137,7 +139,7 @@ class LessonContext:
 
     lesson: model.Lesson
     label: Labels  # around the lesson, in its language
-    numbers: Mapping[str, Number]
+    results: Results
     source: Callable[[Picture], str]  # address of a picture
     anchor: Anchor
     live: Collection[str] = ()  # names of the blocks that a page can run
@@ -196,7 +198,7 @@ class LessonContext:
 
     def filled(self, markdown: str) -> str:
         """Return a text with the numbers in it."""
-        return filled(markdown, self.numbers, self.lesson.language)
+        return filled(markdown, self.results.numbers, self.lesson.language)
 
 
 def block_html(block: model.Block, setting: LessonContext, *, first: bool = False) -> Markup:
@@ -293,6 +295,77 @@ def _code(block: model.Code, setting: LessonContext) -> Markup:
     )
 
 
+def _trace(block: model.Trace, setting: LessonContext) -> Markup:
+    lines, label = setting.results.traces[block.name], setting.label
+    title = label("code_of", file=f"glsl/{lines.file}")
+    texel = label("texel_of", x=lines.texel[0], y=lines.texel[1])
+    reveals = setting.answers != "none"
+    labels_ = [lines.label(index) for index in range(len(lines.steps))]
+    return tag(
+        "figure",
+        traced_code(lines, label, reveals=reveals),
+        tag("figcaption", setting.line(block.caption), Markup(" "), tag("small", f"{title}, {texel}.")),
+        traced_steps(lines, label, reveals=reveals) if lines.steps else None,
+        id=block.name,
+        class_="traced",
+        data_steps=json.dumps(labels_, ensure_ascii=False) if lines.steps else None,
+        data_name=lines.loop or None,
+    )
+
+
+def traced_code(lines: TracedLines, label: Labels, *, at: int | None = None, reveals: bool = False) -> Markup:
+    """Return the lines of a trace as a table: number, code, and the values beside it.
+
+    Of a loop these are the values of the table's rows, or those of the step with the index ``at``.
+    ``reveals``: what a question hides is in the page, to be shown behind it.
+    """
+    marked = code("\n".join(line.code for line in lines.lines)).split("\n")
+    rows = []
+    for line, html in zip(lines.lines, map(Markup, marked), strict=True):
+        values = (_beside(each, lines, at, reveals) for each in line.values)
+        rows.append(
+            tag(
+                "tr",
+                tag("th", str(line.number), scope="row"),
+                tag("td", tag("code", _wrapped(line.code, html))),
+                tag("td", *values),
+            )
+        )
+    heads = (tag("th", label(key), scope="col") for key in ("trace_line", "trace_code", "trace_values"))
+    head = tag("thead", tag("tr", *heads), class_="visually-hidden")
+    return tag("div", tag("table", head, tag("tbody", *rows)), class_="table beside", tabindex=0)
+
+
+def _beside(each: Beside, lines: TracedLines, at: int | None, reveals: bool) -> Markup:
+    """Return what stands beside a line; with ``data-at`` for a value of each step."""
+    indices = range(len(each.texts))
+    shown = [each.text(index) for index in indices]
+    full = [each.phrase(value) for value in each.texts] if each.hidden and reveals else None
+    return tag(
+        "span",
+        each.on_paper(lines.rows) if at is None else each.text(at),
+        data_at=json.dumps(shown, ensure_ascii=False) if each.is_looped else None,
+        data_asked=" ".join(each.hidden.values()) or None,
+        data_full=json.dumps(full, ensure_ascii=False) if full else None,
+    )
+
+
+def traced_steps(lines: TracedLines, label: Labels, *, reveals: bool = False) -> Markup:
+    """Return the table of a loop: a row for each step, a column for each variable."""
+    head = (tag("th", tag("code", name), scope="col") for name in (lines.loop, *lines.columns))
+    rows = []
+    for index in lines.rows:
+        step, cells = lines.steps[index], []
+        for name in lines.columns:
+            asked = lines.hidden.get((name, step))
+            full = text_of(lines.values[name, step], lines.digits) if asked and reveals else None
+            cells.append(tag("td", lines.cell(name, index), data_asked=asked, data_full=full))
+        rows.append(tag("tr", tag("th", str(step), scope="row"), *cells, data_step=str(index)))
+    caption = tag("caption", label("trace_steps", loop=lines.loop), class_="visually-hidden")
+    table = tag("table", caption, tag("thead", tag("tr", *head)), tag("tbody", *rows))
+    return tag("div", table, class_="table steps", tabindex=0)
+
+
 def _break(block: model.Break, setting: LessonContext) -> Markup:
     label, lines = setting.label, bug_region(block)
     correct, broken = pictures_in(block)
@@ -339,7 +412,9 @@ def _choice(block: model.Question, index: int, setting: LessonContext) -> Markup
 
 def _question(block: model.Question, setting: LessonContext) -> Markup:
     label, choices = setting.label, None
-    if block.choices:
+    if block.of is not None:
+        choices = _number(block, setting)
+    elif block.choices:
         choices = tag(
             "fieldset",
             tag("legend", label("question"), class_="visually-hidden"),
@@ -350,6 +425,33 @@ def _question(block: model.Question, setting: LessonContext) -> Markup:
         )
     answer = setting.answer(block, "answer", label("question"), block.ask, setting.prose(block.answer))
     return setting.titled(block, label("question"), setting.prose(block.ask), choices, answer)
+
+
+def _number(block: model.Question, setting: LessonContext) -> Markup | None:
+    """Return the field for a number, which a script checks; nothing where the page holds no answers."""
+    if setting.answers == "none":
+        return None
+    label, expected = setting.label, setting.results.answers[block.name]
+    field_ = tag(
+        "input",
+        type="text",
+        inputmode="decimal",
+        autocomplete="off",
+        data_value=repr(expected.value),
+        data_tolerance=repr(expected.tolerance),
+    )
+    return tag(
+        "div",
+        tag("label", label("your_number"), Markup(" "), field_),
+        Markup(" "),
+        tag("button", label("check_number"), type="button"),
+        tag("p", class_="verdict", role="status"),
+        class_="number",
+        hidden=True,
+        data_right=label("right_number", value=decimal(expected.text, setting.lesson.language)),
+        data_wrong=label("wrong_number"),
+        data_unread=label("no_number"),
+    )
 
 
 def _exercise(block: model.Exercise, setting: LessonContext) -> Markup:
@@ -411,6 +513,7 @@ WRITERS: dict[type[model.Block], Callable[[Any, LessonContext], Markup]] = {
     model.Slider: _slider,
     model.Compare: _compare,
     model.Code: _code,
+    model.Trace: _trace,
     model.Break: _break,
     model.Question: _question,
     model.Exercise: _exercise,

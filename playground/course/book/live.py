@@ -322,6 +322,7 @@ LIVE: dict[type[model.Named], Callable[[Any, Scenes], LiveData | None]] = {
     model.Slider: _slider,
     model.Compare: _compare,
     model.Code: _still,
+    model.Trace: _still,
     model.Break: _break,
     model.Question: _still,
     model.Exercise: _exercise,

@@ -27,10 +27,10 @@ from playground.course.grading.report import (
     spelled_points,
 )
 from playground.course.grading.submissions import HandedIn, Submission, printable, read_submission
-from playground.course.handout import Assignment, assignments_of, normalised
+from playground.course.handout import NUMBER_KEY, Assignment, assignments_of, normalised
 from playground.course.judging import LIMIT_BYTES, Judge, cause_of, surviving
-from playground.course.library import Said, in_language, labels
-from playground.course.model import Challenge, Exercise
+from playground.course.library import Said, decimal, in_language, labels
+from playground.course.model import Challenge, Exercise, Question, Task
 from playground.course.read import read_lesson
 from playground.course.scenes import draw
 from playground.course.tasks import (
@@ -47,6 +47,7 @@ from playground.course.tasks import (
     wanted_scene,
     webp_of,
 )
+from playground.course.traces import Answer, number_in, trace_of, traced
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine, open_engine
 from playground.engine.plain_forms import silent
@@ -259,12 +260,22 @@ def open_service(parent: Parent, options: Options) -> Service:
     engine = open_engine(software=options.software, device=options.device, cache_bytes=_CACHE, notice=silent)
     engine.runner.pool.clears = True  # a text that gets around writing a texel shows nobody else's there
     lessons = [read_lesson(name, options.language) for name in options.lessons]
-    tasks = {assignment.name: assignment.task for assignment in assignments_of(lessons)}
+    assignments = {assignment.name: assignment for assignment in assignments_of(lessons)}
     judge = Judge(engine)
+    numbers: dict[str, Answer] = {}
+
+    def number_of(assignment: Assignment, question: Question) -> Answer:
+        if assignment.name not in numbers:
+            lines = traced(engine, assignment.lesson, trace_of(assignment.lesson, question))
+            numbers[assignment.name] = lines.answer(question)
+        return numbers[assignment.name]
 
     def answer_request(request: Request) -> Mark:
-        task = tasks[request.exercise]
+        assignment = assignments[request.exercise]
+        task = assignment.task
         parent.report(PREPARING)
+        if isinstance(task, Question):
+            return _number_mark(task, number_of(assignment, task), request.text, options.language)
         _ = judge.ends(task) if isinstance(task, Challenge) else judge.answers(task)
         if request.text is None:
             return _judged_mark(judge, options.language, task, request.exercise, answer(task))
@@ -300,6 +311,24 @@ def _judged_mark(judge: Judge, language: str, task: Exercise | Challenge, name: 
     return Mark(result.points, result.of, GRADED, said(sentences(result, language)), pairs)
 
 
+def _number_mark(task: Question, answer: Answer, text: str | None, language: str) -> Mark:
+    """Return the mark of the number that a file holds; of the answer itself for no text."""
+    given = answer.text if text is None else _number_text(text)
+    right = answer.accepts(given)
+    key = "number_right" if right else "number_wrong" if number_in(given) is not None else "no_number"
+    said = labels("grading", language)(
+        key, mine=printable(given), value=decimal(answer.text, language), tolerance=f"{answer.tolerance:g}"
+    )
+    return Mark(float(task.points) if right else 0.0, task.points, GRADED, (said,))
+
+
+def _number_text(text: str) -> str:
+    """Return what a student has written behind the last colon that the number belongs behind; "" for none."""
+    lines = [line.strip().partition(":") for line in text[:_MAX_TOML].split("\n")]
+    texts = [value.strip() for key, _, value in lines if key.strip().casefold() == NUMBER_KEY]
+    return texts[-1] if texts else ""
+
+
 def _pairs(engine: Engine, exercise: Exercise, work: Work, verdict: Verdict) -> tuple[Pair, ...]:
     """Return the pictures to compare: those that failed first, of measures one of all that is drawn."""
     results = sorted(verdict.results, key=lambda result: result.passed)
@@ -314,7 +343,7 @@ def _pair(mine: Picture, expected: Picture) -> Pair:
     return Pair(webp_of(mine), webp_of(expected))
 
 
-def no_mark(task: Exercise | Challenge) -> Mark:
+def no_mark(task: Exercise | Challenge | Question) -> Mark:
     """Return the mark of one who has nothing."""
     if isinstance(task, Challenge):
         return Mark(0.0, 0, GRADED, score=0.0, goal=task.goal)
@@ -410,7 +439,7 @@ def grade(
     same = {
         submission.name: alike(_readable(read, submission), submission.starter)
         for submission in assignments
-        if submission.task.file
+        if isinstance(submission.task, Task) and submission.task.file
     }
     return [
         Graded(

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator
 from typing import Any
 
 from playground.course import model
 from playground.course.glossary import linked_term, terms_of
 from playground.course.library import SOURCE, THESIS, labels
-from playground.course.measures import Number, filled
+from playground.course.measures import filled
 from playground.course.scenes import bug_region, excerpt
 from playground.course.tasks import checks_itself, starter_text
+from playground.course.traces import Results
 from playground.errors import DataError
 from playground.extras import needs
 from playground.sketch.assign import value_of, values_of
@@ -19,8 +20,8 @@ from playground.sketch.assign import value_of, values_of
 _LINK = re.compile(r"\[([^\]]*)\]\((lesson|sketch|thesis|term):([^)]*)\)")
 
 
-def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number], lessons: Collection[str] = ()) -> str:
-    """Return a lesson's notebook, not run yet, with its numbers and with links to ``lessons``, by name.
+def notebook_text(lesson: model.Lesson, results: Results, lessons: Collection[str] = ()) -> str:
+    """Return a lesson's notebook, not run yet, with its results and with links to ``lessons``, by name.
 
     Raises ``DataError`` without nbformat.
     """
@@ -31,7 +32,7 @@ def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number], lessons: 
     form: Any = nbformat  # its functions have no types
     make: Any = {"markdown": form.v4.new_markdown_cell, "code": form.v4.new_code_cell}
     cells = []
-    for number, (kind, text) in enumerate(_Writer(lesson, numbers, lessons).cells()):
+    for number, (kind, text) in enumerate(_Writer(lesson, results, lessons).cells()):
         cell: Any = make[kind](text)
         cell["id"] = f"{lesson.name.replace('_', '-')[:40]}-{number}"  # the same at every build
         cells.append(cell)
@@ -50,10 +51,10 @@ Cell = tuple[str, str]
 class _Writer:
     """Writes the cells of one lesson."""
 
-    def __init__(self, lesson: model.Lesson, numbers: Mapping[str, Number], lessons: Collection[str]) -> None:
+    def __init__(self, lesson: model.Lesson, results: Results, lessons: Collection[str]) -> None:
         self.lesson = lesson
         self.lessons = lessons
-        self.numbers = numbers
+        self.results = results
         self.label = labels("book", lesson.language)
 
     def cells(self) -> Iterator[Cell]:
@@ -92,6 +93,16 @@ class _Writer:
         caption = f"{self.text(block.caption)} " if block.caption else ""
         yield "markdown", f"```glsl\n{excerpt(block.file, block.anchor).text}\n```\n\n{caption}({title})"
 
+    def trace(self, block: model.Trace) -> Iterator[Cell]:
+        """Yield lines of a shader with a texel's values, the table of their loop, the code that traces it."""
+        lines = self.results.traces[block.name]
+        texel = self.label("texel_of", x=lines.texel[0], y=lines.texel[1])
+        title = f"{self.label('code_of', file=f'glsl/{lines.file}')}, {texel}"
+        caption = f"{self.text(block.caption)} ({title})"
+        parts = (f"```glsl\n{lines.text()}\n```", lines.markdown(), caption)
+        yield "markdown", "\n\n".join(filter(None, parts))
+        yield "code", f'lesson.trace("{block.name}")'
+
     def bug(self, block: model.Break) -> Iterator[Cell]:
         """Yield a bug: its picture, its lines to be fixed, hint and fix folded away."""
         yield "markdown", f"### {self.label('bug')}\n\n{self.text(block.ask)}"
@@ -104,7 +115,13 @@ class _Writer:
         """Yield a question, its answer folded away."""
         choices = "".join(f"\n- {self.text(choice)}" for choice in block.choices)
         question = f"### {self.label('question')}\n\n{self.text(block.ask)}\n{choices}".rstrip()
-        yield "markdown", f"{question}\n\n{self.folded('answer', block.answer)}"
+        folded = self.folded("answer", block.answer)
+        if block.of is None:
+            yield "markdown", f"{question}\n\n{folded}"
+            return
+        yield "markdown", f"{question}\n\n{self.label('write_number')}"
+        yield "code", f'lesson.answer("{block.name}", "")'
+        yield "markdown", folded
 
     def measure(self, block: model.Measure) -> Iterator[Cell]:
         """Yield a number with its sentence; nothing where only prose names it."""
@@ -142,7 +159,7 @@ class _Writer:
 
     def text(self, markdown: str) -> str:
         """Return a text with its numbers, and with links that a notebook can follow."""
-        return _LINK.sub(self.linked, filled(markdown, self.numbers, self.lesson.language))
+        return _LINK.sub(self.linked, filled(markdown, self.results.numbers, self.lesson.language))
 
     def linked(self, link: re.Match[str]) -> str:
         """Return a link that a notebook can follow: of a term, to the list at its end."""
@@ -161,6 +178,7 @@ WRITERS: dict[type[model.Block], Callable[[_Writer, Any], Iterator[Cell]]] = {
     model.Slider: _Writer.figure,
     model.Compare: _Writer.figure,
     model.Code: _Writer.code,
+    model.Trace: _Writer.trace,
     model.Break: _Writer.bug,
     model.Question: _Writer.question,
     model.Exercise: _Writer.task,

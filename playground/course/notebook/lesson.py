@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cache
@@ -11,9 +12,10 @@ from typing import Any
 from PIL import Image
 
 from playground.course import model
+from playground.course.book.html import traced_code, traced_steps
 from playground.course.book.live import widget_page
 from playground.course.judging import JudgeProcess
-from playground.course.library import SOURCE, Labels, labels
+from playground.course.library import SOURCE, Labels, decimal, labels
 from playground.course.measures import measured
 from playground.course.model import Compare, Figure, Scene, Slider, Steps
 from playground.course.read import read_lesson
@@ -33,6 +35,7 @@ from playground.course.tasks import (
     share_differing,
     starter,
 )
+from playground.course.traces import TracedLines, number_in, trace_of, traced
 from playground.engine.frame import Frame
 from playground.errors import SketchError, nearest
 from playground.markup import Markup, data_url, joined, tag, with_code
@@ -236,6 +239,60 @@ class Fixed(Frame):
         return tag("p", self.verdict) + tag("img", src=source, alt=self.verdict)
 
 
+_STYLE = (
+    ".traced :is(th,td){text-align:left;vertical-align:top}"
+    ".traced .beside :is(td,th){font-family:monospace}"
+    ".traced .beside code{white-space:pre-wrap;background:none}"
+    ".traced .beside span{display:block}"
+)
+_TO_STEP = (
+    "const f=this.closest('figure');"
+    "for(const e of f.querySelectorAll('[data-at]'))e.textContent=JSON.parse(e.dataset.at)[this.value];"
+    "const t=JSON.parse(f.dataset.steps)[this.value];"
+    "f.querySelector('output').textContent=t;this.setAttribute('aria-valuetext',t)"
+)
+"""What a slider does in a notebook's page, which has no script of its own."""
+
+
+@dataclass(frozen=True, eq=False)
+class Traced:
+    """Lines of a shader with a texel's values, that a notebook shows with a slider over their loop."""
+
+    lines: TracedLines
+    label: Labels
+
+    def __str__(self) -> str:
+        return "\n\n".join(filter(None, (self.lines.text(), self.lines.markdown())))
+
+    def _repr_html_(self) -> str:
+        lines = self.lines
+        if not lines.steps:
+            return tag(
+                "figure", tag("style", Markup(_STYLE)), traced_code(lines, self.label), class_="traced"
+            )
+        labels = [lines.label(index) for index in range(len(lines.steps))]
+        slider = tag(
+            "input",
+            type="range",
+            min=0,
+            max=len(labels) - 1,
+            value=0,
+            oninput=_TO_STEP,
+            aria_label=lines.loop,
+            style="width:20em;vertical-align:middle",
+        )
+        control = tag("label", slider, Markup(" "), tag("output", labels[0]))
+        return tag(
+            "figure",
+            tag("style", Markup(_STYLE)),
+            traced_code(lines, self.label, at=0),
+            control,
+            traced_steps(lines, self.label),
+            class_="traced",
+            data_steps=json.dumps(labels, ensure_ascii=False),
+        )
+
+
 class NotebookLesson:
     """A lesson whose blocks can be shown one by one."""
 
@@ -264,6 +321,31 @@ class NotebookLesson:
         if not isinstance(block, model.Measure):
             raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' measures nothing")
         return on_engine(lambda engine: measured(engine, block)).value
+
+    def trace(self, name: str) -> Traced:
+        """Return lines of a shader with the values of one texel, traced now.
+
+        Raises ``SketchError`` for a block that is no trace.
+        """
+        block = self._block(name)
+        if not isinstance(block, model.Trace):
+            raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' is no trace")
+        return Traced(on_engine(lambda engine: traced(engine, self.lesson, block)), self.label)
+
+    def answer(self, name: str, number: str | float) -> str:
+        """Return whether a number is what a question asks for, in the lesson's language.
+
+        Raises ``SketchError`` for a block that asks for no number.
+        """
+        block = self._block(name)
+        if not isinstance(block, model.Question) or block.of is None:
+            raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' asks for no number")
+        if number_in(str(number)) is None:
+            return self.label("no_number")
+        expected = self.trace(trace_of(self.lesson, block).name).lines.answer(block)
+        if not expected.accepts(str(number)):
+            return self.label("wrong_number")
+        return self.label("right_number", value=decimal(expected.text, self.lesson.language))
 
     def fix(self, name: str, lines: str) -> Fixed:
         """Return the picture that a shader makes with other lines in place of those with the bug.

@@ -33,6 +33,7 @@ from playground.course.model import (
     Scene,
     Slider,
     Steps,
+    Trace,
 )
 from playground.course.scenes import BOTH, comparable, excerpt
 from playground.course.tasks import scene_of as begun
@@ -119,6 +120,7 @@ _END = re.compile(r"[.!?…][\"”’)*_]*(?:\s+)(?=[A-ZÀ-Þ0-9«`$*\[({“\x00
 _SHORT = re.compile(r"(?:\b(?:e\.g|i\.e|cf|p|pp|fig|vol|M|Mr|Dr|et al|env)|\b[A-Z])\.$")
 _WORD = re.compile(r"[^\W_]+(?:['’.,\-][^\W_]+)*")
 _BLANKS = re.compile(r"[ \t\n]+")  # a no-break space stays
+_NUMBER = re.compile(r"\{\{[^}]*\}\}")  # one, whatever its name
 _LINK = re.compile(r"\]\([^)]*\)")
 
 
@@ -144,7 +146,7 @@ def sentences(text: Markdown) -> list[Markdown]:
 
 def words(text: Markdown) -> int:
     """Count what is read of a text: its words, its numbers, the names in its formulas."""
-    return len(_WORD.findall(_LINK.sub("]", text)))
+    return len(_WORD.findall(_LINK.sub("]", _NUMBER.sub("0", text))))
 
 
 def shown_of(text: Markdown, most: int = MAX_WORDS) -> Markdown:
@@ -364,7 +366,7 @@ def _variants(block: Compare, lesson: Lesson) -> Iterator[Beat]:
         yield beat if index == 0 else replace(beat, notes=name)
 
 
-def _code(block: Code, lesson: Lesson) -> Iterator[Beat]:
+def _listed_code(block: Code | Trace, lesson: Lesson) -> Iterator[Beat]:
     label = labels("talk", lesson.language)["part"]
     excerpt_text = excerpt(block.file, block.anchor)
     parts = _shared(excerpt_text.text.split("\n"))
@@ -377,6 +379,24 @@ def _code(block: Code, lesson: Lesson) -> Iterator[Beat]:
         beat = _told("code", block.caption, label=name, code=code)
         line += len(part)
         yield beat if number == 0 else replace(beat, notes="")
+
+
+def _trace(block: Trace, lesson: Lesson) -> Iterator[Beat]:
+    """Yield the lines, then the table of the loop, whose cells are numbers that are filled in later."""
+    yield from _listed_code(block, lesson)
+    if not block.rows:
+        return
+    hidden = lesson.asked(block.name)
+    head = f"| {block.loop} | {' | '.join(f'`{name}`' for name in block.variables)} |"
+    rule = "|---" * (len(block.variables) + 1) + "|"
+    for at in range(0, len(block.rows), _ROWS):
+        rows = [head, rule]
+        for step in block.rows[at : at + _ROWS]:
+            keys = [(name, step) for name in block.variables]
+            cells = ["?" if key in hidden else f"{{{{{block.name}:{key[0]}:{step}}}}}" for key in keys]
+            rows.append(f"| {step} | {' | '.join(cells)} |")
+        board = "\n".join(rows)
+        yield Beat("board", 0, "", label=block.file, board=board, notes=board)
 
 
 def _shared(lines: list[str]) -> list[list[str]]:
@@ -414,7 +434,8 @@ BEATS: dict[type[Block], Callable[[Any, Lesson], Iterator[Beat]]] = {
     Steps: _steps,
     Slider: _slider,
     Compare: _variants,
-    Code: _code,
+    Code: _listed_code,
+    Trace: _trace,
     Break: _bug,
     Question: _question,
     Exercise: _exercise,

@@ -30,6 +30,7 @@ from playground.course.talk.beats import (
 )
 from playground.course.talk.presenter import Row
 from playground.course.talk.slide import Sizes, board_of, gauges_of, strip_of
+from playground.course.traces import numbers_of_traces
 from playground.engine.engine import Engine
 from playground.files import write_file
 from playground.publish.video import QUALITY, Video, check_video
@@ -221,12 +222,10 @@ def _block(lesson: Lesson, beat: Beat) -> Any:
 
 def _numbers(engine: Engine, film: PresentedFilm) -> dict[str, Number]:
     """Compute the numbers that the film's beats name."""
-    names_needed = {name for beat in film.beats for text in texts_of_beat(beat) for name in named_in(text)}
-    return {
-        measure.name: measured(engine, measure)
-        for measure in film.lesson.measures
-        if measure.name in names_needed
-    }
+    names = {name for beat in film.beats for text in texts_of_beat(beat) for name in named_in(text)}
+    measures = [measure for measure in film.lesson.measures if measure.name in names]
+    numbers = {measure.name: measured(engine, measure) for measure in measures}
+    return numbers | numbers_of_traces(engine, film.lesson, names)
 
 
 def _with_numbers(beat: Beat, lesson: Lesson, numbers: Mapping[str, Number]) -> Beat:

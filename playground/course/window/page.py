@@ -242,9 +242,9 @@ class Page:
     textures: Textures
     present: Callable[[], None]  # begins a presentation of the lesson
 
-    def say(self, key: str, *arguments: object) -> str:
+    def say(self, key: str, *arguments: object, **named: object) -> str:
         """Return a label of the interface."""
-        return self.reader.say(key, *arguments)
+        return self.reader.say(key, *arguments, **named)
 
     def text(self, words: Markdown, *, size: float = TEXT, dim: bool = False) -> None:
         """Draw a text of the lesson, its numbers in their places."""

@@ -30,6 +30,7 @@ from playground.course.model import (
     Scene,
     Slider,
     Steps,
+    Trace,
 )
 from playground.course.scenes import BOTH, comparable
 from playground.course.tasks import (
@@ -231,6 +232,31 @@ def draw_code_block(block: Code, page: Page) -> None:
         page.text(block.caption, size=theme.SMALL, dim=True)
 
 
+def draw_trace(block: Trace, page: Page) -> None:
+    """Draw lines of a shader with the values of one texel, and a slider over the steps of their loop."""
+    reader = page.reader
+    lines = reader.numbers.traces.get((page.lesson.name, block.name))
+    failed = reader.numbers.failed.get((page.lesson.name, block.name))
+    with page.frame(block.name, theme.LINE):
+        with page.look.font(page.look.text, theme.SMALL):
+            texel = page.say("texel_of", x=block.texel[0], y=block.texel[1])
+            imgui.text_disabled(f"glsl/{block.file}, {texel}")
+        if lines is None:
+            page.text(page.say("unmeasured", failed) if failed else page.say("measuring"), dim=True)
+        else:
+            last = len(lines.steps) - 1
+            at = min(reader.at.get(block.name, 0), max(last, 0))
+            if lines.steps:
+                imgui.set_next_item_width(-1)
+                chosen = slide_whole("##steps", at, (0, last), lines.label)
+                reader.at[block.name] = at = at if chosen is None else chosen
+            questions = page.lesson.questions_of(block.name)
+            answered = all((question.name, "answer") in reader.shown for question in questions)
+            fence, text = "```", lines.text(at, reveals=answered)
+            page.prose.draw(f"{fence}\n{text}\n{fence}", page.look, size=theme.SMALL + 1)
+        page.text(block.caption, size=theme.SMALL, dim=True)
+
+
 def draw_break(block: Break, page: Page) -> None:
     """Draw a bug: it is put into the picture, searched for, and fixed."""
     bugs = page.reader.bugs
@@ -266,6 +292,7 @@ def _hint(block: Break, page: Page) -> None:
         opened.add(key)
 
 
+_FIELD = 120.0  # for a number, in units of scale 1
 _WIDE = 160.0  # of the picture to match, in units of scale 1
 
 
@@ -446,6 +473,8 @@ def draw_question(block: Question, page: Page) -> None:
         chosen = reader.chosen.get(block.name, -1)
         for index, choice in enumerate(block.choices):
             _choice(block, index, choice, chosen, page)
+        if block.of is not None:
+            _number(block, page)
         right = bool(block.choices) and chosen == block.right
         if chosen >= 0:
             page.text(page.say("right" if right else "wrong"))
@@ -484,6 +513,26 @@ def draw_measure(block: Measure, page: Page) -> None:
         if failed is not None:
             page.text(page.say("unmeasured", failed), size=theme.SMALL, dim=True)
         page.text(block.sentence)
+
+
+def _number(block: Question, page: Page) -> None:
+    """Draw a field for a number, and whether it is right."""
+    reader = page.reader
+    imgui.align_text_to_frame_padding()
+    imgui.text(page.say("your_number"))
+    imgui.same_line()
+    imgui.set_next_item_width(_FIELD * page.look.scale)
+    flags = imgui.InputTextFlags_.enter_returns_true.value
+    entered, reader.typed[block.name] = imgui.input_text("##number", reader.typed.get(block.name, ""), flags)
+    page.same_line(page.say("check_number"))
+    waits = (page.lesson.name, block.name) not in reader.numbers.answers
+    if page.button(page.say("check_number"), enabled=not waits) or (entered and not waits):
+        reader.check_number(block)
+    if block.name in reader.checked:
+        right = reader.checked[block.name]
+        value = f"{{{{{block.name}}}}}"
+        said = page.say("no_number" if right is None else "wrong_number")
+        page.text(page.say("right_number", value=value) if right else said)
 
 
 def _choice(block: Question, index: int, choice: str, chosen: int, page: Page) -> None:
@@ -557,6 +606,7 @@ DRAWN: dict[type[Block], Any] = {
     Slider: draw_slider,
     Compare: draw_compare,
     Code: draw_code_block,
+    Trace: draw_trace,
     Break: draw_break,
     Question: draw_question,
     Exercise: draw_exercise,

@@ -22,14 +22,25 @@ from playground.course.model import (
     Lesson,
     Markdown,
     Measure,
+    Question,
     Scene,
     Section,
     Slider,
     Steps,
+    Trace,
     texts_of,
 )
 from playground.course.scenes import BOTH, Sketches, comparable
 from playground.course.tasks import answer_text, path_of
+from playground.course.traces import (
+    Answer,
+    TracedLines,
+    answers_in,
+    number_in,
+    numbers_with_answers,
+    traced,
+    traces_named,
+)
 from playground.course.window.bugs import Bugs, Copies
 from playground.course.window.figure_view import FigureView, steps_of
 from playground.course.window.progress import Progress, progress_file, write_progress
@@ -89,29 +100,36 @@ Known = dict[str, Number]
 
 @dataclass
 class Numbers:
-    """The results of the measures of the lessons read so far."""
+    """The results of the measures and traces of the lessons read so far."""
 
     session: Session
-    results: dict[str, Known] = field(default_factory=dict)  # by lesson and measure
+    results: dict[str, Known] = field(default_factory=dict)  # by lesson and name
+    traces: dict[tuple[str, str], TracedLines] = field(default_factory=dict)  # by lesson and block
+    answers: dict[tuple[str, str], Answer] = field(default_factory=dict)  # by lesson and question
     failed: dict[tuple[str, str], str] = field(default_factory=dict)  # why there is no number
-    pending: list[tuple[str, Measure]] = field(default_factory=list)
+    pending: list[tuple[str, Measure | Trace]] = field(default_factory=list)
+    _lessons: dict[str, Lesson] = field(default_factory=dict)
 
     def want(self, lesson: Lesson, blocks: tuple[Block, ...]) -> None:
         """Request all numbers that blocks of a lesson show."""
         names = {name for block in blocks for text in texts_of(block) for name in named_in(text)}
-        names |= {block.name for block in blocks if isinstance(block, Measure)}
+        names |= {block.name for block in blocks if isinstance(block, Measure | Trace | Question)}
         numbers = self.results.setdefault(lesson.name, {})
+        self._lessons[lesson.name] = lesson
+        measures: list[Measure | Trace] = [
+            each for each in lesson.measures if each.name in names and each.name not in numbers
+        ]
+        traces = [each for each in traces_named(lesson, names) if (lesson.name, each.name) not in self.traces]
         self.pending = [
-            (lesson.name, measure)
-            for measure in lesson.measures
-            if measure.name in names
-            and measure.name not in numbers
-            and (lesson.name, measure.name) not in self.failed
+            (lesson.name, each)
+            for each in [*measures, *traces]
+            if (lesson.name, each.name) not in self.failed
         ]
 
     def waits(self, lesson: Lesson, name: str) -> bool:
         """Return whether a number is still to be computed."""
-        return any((lesson.name, name) == (other, measure.name) for other, measure in self.pending)
+        block = name.partition(":")[0]
+        return any((lesson.name, block) == (other, each.name) for other, each in self.pending)
 
     @property
     def ready(self) -> bool:
@@ -123,13 +141,22 @@ class Numbers:
         session = self.session
         if not self.ready or session.plan is None:
             return False
-        lesson, measure = self.pending.pop(0)
+        lesson, block = self.pending.pop(0)
         try:
             with as_before(session.engine, session.plan):
-                self.results[lesson][measure.name] = measured(session.engine, measure)
+                if isinstance(block, Measure):
+                    self.results[lesson][block.name] = measured(session.engine, block)
+                else:
+                    self._trace(self._lessons[lesson], block)
         except PlaygroundError as error:
-            self.failed[lesson, measure.name] = error.diagnostics[0].message
+            self.failed[lesson, block.name] = error.diagnostics[0].message
         return True
+
+    def _trace(self, lesson: Lesson, block: Trace) -> None:
+        lines = traced(self.session.engine, lesson, block)
+        self.results[lesson.name] |= numbers_with_answers(lesson, {block.name: lines})
+        self.answers |= {(lesson.name, n): a for n, a in answers_in(lesson, {block.name: lines}).items()}
+        self.traces[lesson.name, block.name] = lines
 
     def fill(self, text: Markdown, lesson: Lesson) -> Markdown:
         """Return a text with today's numbers; "…" for one that is not computed yet."""
@@ -155,6 +182,8 @@ class Reader:
     at: dict[str, int] = field(default_factory=dict)  # of a series: which picture, by block
     shown: set[tuple[str, str]] = field(default_factory=set)  # what was opened: (block, "answer")
     chosen: dict[str, int] = field(default_factory=dict)  # the answers given, by question
+    typed: dict[str, str] = field(default_factory=dict)  # the numbers given, by question
+    checked: dict[str, bool | None] = field(default_factory=dict)  # whether right; None: no number
     playing: str = ""  # the series that plays
     to_top: bool = False  # a page was turned: it is to be shown from its top
 
@@ -192,9 +221,9 @@ class Reader:
         """The code of the language that is read."""
         return self.progress.language if self.progress.language in LANGUAGES else preferred_language()
 
-    def say(self, key: str, *values: object) -> str:
+    def say(self, key: str, *values: object, **named: object) -> str:
         """Return a label of the window in that language, with values in its places."""
-        return labels("window", self.language)(key, *values)
+        return labels("window", self.language)(key, *values, **named)
 
     @property
     def section(self) -> Section | None:
@@ -230,6 +259,7 @@ class Reader:
             return False
         if self.lesson is None or lesson.name != self.lesson.name:
             self.at, self.shown, self.chosen = {}, set(), {}
+            self.typed, self.checked = {}, {}
             self.tasks.forget()
             self.bugs.forget()
         if self.lesson is None or not self.progress.shown:
@@ -357,6 +387,17 @@ class Reader:
         at = self.at.get(block.name, 0)
         self.move(block, 0 if at >= len(block.scenes) - 1 else at)
         self.playing, self._due = block.name, self.bench.notices.now() + _pause(block)
+
+    def check_number(self, question: Question) -> None:
+        """Compare the number typed for a question with its answer, once that is computed."""
+        answer = self.numbers.answers.get((self.progress.lesson, question.name))
+        text = self.typed.get(question.name, "")
+        if answer is None:
+            return
+        known = number_in(text) is not None
+        self.checked[question.name] = answer.accepts(text) if known else None
+        if self.checked[question.name]:
+            self.shown.add((question.name, "answer"))
 
     def reset(self, block: FigureBlock) -> None:
         """Show a block's picture as the lesson has it."""

@@ -51,6 +51,7 @@ float kernel(ivec2 texel) {
     ivec2 across = ivec2(-along.y, along.x);
     ivec2 neighbours[4] = ivec2[4](texel + along, texel + across, texel - along, texel - across);
     // end: neighbours
+    // anchor: height
     float total = 0.0;
     float count = 0.0;
     for (int i = 0; i < 4; i++) {
@@ -58,7 +59,6 @@ float kernel(ivec2 texel) {
         total += inside ? previous(neighbours[i]) : 0.0;
         count += inside ? 1.0 : 0.0;
     }
-    // anchor: height
     float share = float(2 * r) / float(side);
     ivec2 point = finest_point(texel, side);
     uint which = seed + DIAMOND_SQUARE_SALT;
