@@ -102,16 +102,13 @@ class TracedLines:
         """Return what a step is called: "i = 3"; "i #3" where the variable is no whole number."""
         return f"{self.loop} {'= ' if self.is_counter else '#'}{self.steps[index]}"
 
-    def text(self, index: int | None = None, *, reveals: bool = False) -> str:
-        """Return the lines with their values as text: of a step of the loop, None: of the table's rows."""
+    def text(self) -> str:
+        """Return the lines with their values as text: of a loop, those of the table's rows."""
         wide = max(len(line.code) for line in self.lines)
         rows = []
         for line in self.lines:
-            values = (
-                each.on_paper(self.rows) if index is None else each.text(index, reveals=reveals)
-                for each in line.values
-            )
-            rows.append(f"{line.code:{wide}}  │ {'   '.join(filter(None, values))}".rstrip())
+            values = "   ".join(each.on_paper(self.rows) for each in line.values)
+            rows.append(f"{line.code:{wide}}  │ {values}".rstrip())
         return "\n".join(rows)
 
     def markdown(self) -> str:

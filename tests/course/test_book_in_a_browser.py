@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from playground.course import traces
 from playground.course.book import build
 from playground.course.book.build import prepare, write_book
 from playground.course.book.live import LiveBook
@@ -38,7 +39,7 @@ def book(tmp_path, make_lesson, french, engine):
 def page(book, tmp_path):
     with Browser(tmp_path / "profile") as browser:
         browser.open((book / "en/small.html").as_uri())
-        browser.wait("document.querySelectorAll('.controls').length === 3")
+        browser.wait("document.querySelectorAll('.controls').length === 4")
         yield browser
         assert browser.log() == []
 
@@ -92,6 +93,61 @@ def test_comparison_slides_by_mouse_and_keys_and_side_by_side(page):
         "return [...document.querySelectorAll('#two img')].map((i) => i.getBoundingClientRect().toJSON())"
     )
     assert left["right"] <= right["left"] and left["top"] == right["top"]
+
+
+BESIDE = "[...document.querySelectorAll('#height .beside span')].map((each) => each.textContent)"
+CURRENT = "document.querySelector('#height tr[aria-current] th').textContent"
+
+
+def test_a_trace_is_stepped_through_by_keys_and_says_its_values(page):
+    assert page.run(f"return {CURRENT}") == "0" and "i = 0" in page.run(f"return {BESIDE}")
+    page.run("document.querySelector('#height input').focus()")
+    page.press(RIGHT, RIGHT)
+    assert page.run(f"return {CURRENT}") == "2" and "count = 3" in page.run(f"return {BESIDE}")
+    spoken = page.run("return document.querySelector('#height input').getAttribute('aria-valuetext')")
+    assert spoken.startswith("i = 2: ") and "count = 3" in spoken
+    assert page.run("return document.querySelector('#height input').getAttribute('aria-label')") == "i"
+    mark = "getComputedStyle(document.querySelector('#height tr[aria-current] th'), '::before').content"
+    assert "▸" in page.run(f"return {mark}")  # not by a colour alone
+    page.press(END)
+    assert "total = ?" in page.run(f"return {BESIDE}")
+
+
+def test_a_right_number_puts_the_value_into_the_figure(page):
+    verdict = "document.querySelector('#corners .verdict').textContent"
+    cell = "document.querySelector('#height tr[data-step=\"3\"] td').textContent"
+    said = []
+    for text in ("two", "2.2", "2,1"):
+        page.run("document.querySelector('#corners input').value = arguments[0]", text)
+        page.run("document.querySelector('#corners input').focus()")
+        page.press(ENTER)
+        said.append(page.run(f"return {verdict}"))
+        assert page.run(f"return {cell}") == ("2.1" if text == "2,1" else "?")
+    assert "Write a number" in said[0] and "Not this" in said[1] and said[2] == "Right: 2.1."
+    page.run("document.querySelector('#height input').focus()")
+    page.press(END)
+    assert "total = 2.1" in page.run(f"return {BESIDE}")
+
+
+def test_paper_has_the_table_and_no_answer(page):
+    page.press(RIGHT)
+    page.run("dispatchEvent(new Event('beforeprint'))")
+    page.emulate("setEmulatedMedia", media="print")
+    (total,) = (text for text in page.run(f"return {BESIDE}") if text.startswith("total = 0."))
+    assert total.count("|") == 3 and total.endswith("| ?")
+    assert page.run("return document.querySelector('#height .controls').offsetWidth") == 0
+    assert page.run("return document.querySelector('#height thead th').offsetHeight") > 4
+    boxes = (
+        "[...document.querySelectorAll('#height .beside td')].map((td) => td.getBoundingClientRect().width)"
+    )
+    assert min(page.run(f"return {boxes}")) > 200
+    page.run("dispatchEvent(new Event('afterprint'))")
+    assert "i = 0" in page.run(f"return {BESIDE}")
+
+
+def test_an_answer_that_is_unfolded_puts_the_value_into_the_figure(page):
+    page.click("#corners details.answer summary")
+    assert page.run("return document.querySelector('#height tr[data-step=\"3\"] td').textContent") == "2.1"
 
 
 def test_print_opens_all_details_with_answers_at_end(page):
@@ -255,7 +311,7 @@ def bare_book(tmp_path, engine, monkeypatch):
     monkeypatch.setattr(build.Album, "draw", lambda *_: None)
     monkeypatch.setattr(build, "is_blank", lambda path: False)
     monkeypatch.setattr(
-        build,
+        traces,
         "numbers_of",
         lambda _, lesson: {measure.name: Number(0.25, "0.25") for measure in lesson.measures},
     )

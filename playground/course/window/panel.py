@@ -252,8 +252,11 @@ def draw_trace(block: Trace, page: Page) -> None:
                 reader.at[block.name] = at = at if chosen is None else chosen
             questions = page.lesson.questions_of(block.name)
             answered = all((question.name, "answer") in reader.shown for question in questions)
-            fence, text = "```", lines.text(at, reveals=answered)
-            page.prose.draw(f"{fence}\n{text}\n{fence}", page.look, size=theme.SMALL + 1)
+            for line in lines.lines:
+                page.plain(line.code or " ")
+                indent = " " * (len(line.code) - len(line.code.lstrip()) + 2)
+                for value in filter(None, (each.text(at, reveals=answered) for each in line.values)):
+                    page.plain(f"{indent}{value}", theme.ACCENT)
         page.text(block.caption, size=theme.SMALL, dim=True)
 
 
