@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,6 +104,7 @@ def export(
     grid: int = 0,
     light: bool = False,
     techniques: Mapping[str, tuple[str, ...]] | None = None,
+    trace: bool = False,
     language: str = "",
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
@@ -118,8 +120,8 @@ def export(
     name is replaced, whole or not at all. Without an ``engine`` one is opened.
 
     Those of ``ExportOptions``: ``kind`` of the numbers, ``bits`` a number, ``span`` of a PNG's black and
-    white, ``grid`` of a mesh, its ``light``, ``techniques`` and ``language`` of a page. ``sketch`` is a
-    loaded one, or what ``load`` takes. Returns the path with a summary.
+    white, ``grid`` of a mesh, its ``light``, ``techniques``, ``trace`` and ``language`` of a page. ``sketch``
+    is a loaded one, or what ``load`` takes. Returns the path with a summary.
 
         exported = playground.export("l_dot_n", "land.tif")
         print(exported.path, exported.summary)
@@ -134,6 +136,7 @@ def export(
         grid=grid,
         light=light,
         techniques=techniques or {},
+        trace=trace,
         language=language,
     )
     opened_sketch = opened(sketch)
@@ -159,7 +162,8 @@ def prepare(
     check(path, options)
     if path.suffix.lower() in PAGES:
         plan = engine.plan(sketch, frame or DEFAULT_PICTURE, time, steps)
-        page = prepare_page(engine, sketch, path, options.techniques, frame=frame, time=time, steps=steps)
+        at: dict[str, Any] = {"frame": frame, "time": time, "steps": steps, "traces": options.trace}
+        page = prepare_page(engine, sketch, path, options.techniques, **at)
         return ExportJob(sketch=sketch, path=path, options=options, plan=plan, texture="", kind="", page=page)
     if path.suffix.lower() in SHADERS:
         return _prepare_shader(engine, sketch, path, options, time, steps)

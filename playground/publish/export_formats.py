@@ -104,6 +104,7 @@ class ExportOptions:
     light: bool = False  # multiply a mesh's texture by the light
     techniques: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # of a web page: what else may
     # fill a pass, by the pass; none listed: all that fits
+    trace: bool = False  # a web page shows the values of a texel beside the code
     language: str = ""  # of a web page's interface: en or fr; "": English
 
 
@@ -119,6 +120,7 @@ _OPTIONS: tuple[tuple[str, str, Collection[str], str], ...] = (
     ("bits", "bits are", *_OF_VALUES),
     ("span", "a range is", *_OF_VALUES),
     ("techniques", "menus of techniques are", *_OF_PAGES),
+    ("trace", "traced texts are", *_OF_PAGES),
     ("language", "a language is", *_OF_PAGES),
 )
 """Field of ``ExportOptions`` → what it is in a message, and the endings that take it."""

@@ -53,21 +53,24 @@ def prepare_page(
     frame: tuple[int, int] | None = None,
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
+    traces: bool = False,
 ) -> WebPage:
     """Write down a sketch for a page; raise ``PlaygroundError`` for what no page can run, or is too large.
 
     ``frame`` is the picture's size in pixels at first; None for the usual one. The engine draws what
-    sources are made of, once for all combinations of techniques.
+    sources are made of, once for all combinations of techniques. With ``traces`` the page shows the values
+    of a texel beside the code.
     """
     size, stops = frame or DEFAULT_PICTURE, dict(steps or {})
-    style = read_bundle("page.css")
-    at: dict[str, Any] = {"frame": size, "time": time, "steps": stops}
+    parts = ("trace", "page") if traces else ("page",)  # what traces hand to a page is there before it begins
+    style, script = ("".join(read_bundle(f"{part}.{kind}") for part in parts) for kind in ("css", "js"))
+    at: dict[str, Any] = {"frame": size, "time": time, "steps": stops, "traces": traces}
     data = page_data([sketch], **at, techniques=techniques, engine=engine)
     bytes_of_data = bytes_in_page(data["shared"]["blobs"])
     if bytes_of_data > MAX_PAGE_BYTES:
         largest = f"at most {MAX_PAGE_BYTES // 2**20} MiB; a smaller terrain, image or film would do"
         raise DataError(f"its data would be {bytes_of_data / 2**20:.0f} MiB of a page, {largest}", file=path)
-    return WebPage(data, read_bundle("page.js"), style, stops, time, size)
+    return WebPage(data, script, style, stops, time, size)
 
 
 def page_bytes(engine: Engine, sketch: Sketch, page: WebPage, language: str = "en") -> tuple[bytes, str]:

@@ -52,7 +52,8 @@ HELP = help_text(
     " and what they share) and .glsl (a fragment shader of its own) hold the picture as a shader, or with"
     " --texture one texture. What cannot leave is named, and no shader is written.\n\n"
     ".html is a web page: one file that anybody can open, without a network, in which the sketch runs, can"
-    " be turned, set and edited. With --technique the page has menus of techniques.\n\n"
+    " be turned, set and edited. With --technique the page has menus of techniques, with --trace it shows,"
+    " for any texel, the values of every line of its shaders.\n\n"
     "With --to -, one file goes to standard output, in the form that --format names. As SKETCH, - is a"
     " shader's text from standard input, which is kept as a new file in this folder.",
     "playground export jacksboro",
@@ -67,6 +68,7 @@ HELP = help_text(
     "playground export jacksboro --to page.html",
     "playground export jacksboro --to - --format tif > terrain.tif",
     "playground export fbm --technique height=generation/fbm,generation/mixed --to noise.html",
+    "playground export diamond_square --trace --to steps.html",
 )
 
 
@@ -138,6 +140,13 @@ def export(
             " May be repeated.",
         ),
     ] = None,
+    trace: Annotated[
+        bool,
+        flag(
+            "--trace",
+            "In a web page, show the values of every line beside the code, for a texel that one clicks on.",
+        ),
+    ] = False,
     lang: Annotated[
         str,
         value(
@@ -169,6 +178,7 @@ def export(
         grid=_read_whole("--grid", grid),
         light=light,
         techniques=_read_techniques(technique or []),
+        trace=trace,
         language=lang,
     )
     values, stops = read_values(settings), read_steps(steps)

@@ -18,7 +18,7 @@ const HERE = dirname(fileURLToPath(import.meta.url));
  *  module (esm) is refused.
  *  @type {Object<string, "iife" | "esm" | "css">} */
 const ENTRIES = {
-  "loader.js": "iife", "page.js": "iife", "page.css": "css",
+  "loader.js": "iife", "page.js": "iife", "page.css": "css", "trace.js": "iife", "trace.css": "css",
   "book.js": "iife", "book.css": "css",
   "notebook.js": "esm", "notebook.css": "css",
   "remote.js": "iife", "remote.css": "css",

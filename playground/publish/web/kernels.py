@@ -11,6 +11,7 @@ from playground.engine.textures import split_format
 from playground.errors import ShaderError
 from playground.publish.web.formulas import accepted_runs, formula
 from playground.publish.web.texts import Texts
+from playground.publish.web.traces import trace_data
 from playground.shader.common_glsl import desktop_only, in_common_glsl, lacking
 from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.kernel import options_of
@@ -37,9 +38,10 @@ UNITS = 16
 class Kernels:
     """The kernels of one sketch, each once."""
 
-    def __init__(self, texts: Texts, folder: str) -> None:
+    def __init__(self, texts: Texts, folder: str, *, traces: bool = False) -> None:
         self.texts = texts
         self.folder = folder
+        self.traces = traces  # whether traced texts go with them
         self.data: list[dict[str, Any]] = []
         self._numbers: dict[int, int] = {}  # by identity
         self._held: list[Kernel] = []
@@ -93,6 +95,8 @@ class Kernels:
             own = kernel.vertex_source if name == "vertex" and isinstance(kernel, ForeignShader) else None
             label = f"{name_of(kernel)} vertex"
             data[name] = stage_data(recipe, self.texts.add(recipe.source, self.folder, label) if own else "")
+        if self.traces and (trace := trace_data(kernel, recipes, self.texts, self.folder, name_of(kernel))):
+            data["trace"] = trace
         return data
 
 

@@ -50,30 +50,34 @@ def sketch_data(
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
     engine: Engine | None = None,
+    traces: bool = False,
 ) -> dict[str, Any]:
     """Return a sketch as data; what several have in common goes into ``shared``.
 
     ``frame`` in pixels, ``time`` in seconds, ``steps`` stops repeats early, by path. ``engine``
-    draws what sources are made of, and has it in its cache for the next sketch. Raises
+    draws what sources are made of, and has it in its cache for the next sketch. ``traces`` adds
+    the traced texts of kernels. Raises
     ``PlaygroundError`` for any mistake in the sketch, and for what no page can run; ``TypeError`` where a
     source is made of textures and there is no engine.
     """
     plan = make_plan(
         sketch, PlanRequest(frame_size=frame, time=time, variants=KINDS, steps=steps or {}, interpolated=True)
     )
-    return _Writing(sketch, plan, shared, engine).data()
+    return _Writing(sketch, plan, shared, engine, traces).data()
 
 
 class _Writing:
     """One sketch being written."""
 
-    def __init__(self, sketch: Sketch, plan: Plan, shared: SharedData, engine: Engine | None) -> None:
+    def __init__(
+        self, sketch: Sketch, plan: Plan, shared: SharedData, engine: Engine | None, traces: bool
+    ) -> None:
         self.sketch = sketch
         self.plan = plan
         self.flat = plan.flat
         self.shared = shared
         self.engine = engine
-        self.kernels = Kernels(shared.texts, sketch.folder)
+        self.kernels = Kernels(shared.texts, sketch.folder, traces=traces)
         self.leaves = {leaf.path: leaf for leaf in self.flat.leaves}
         self.steps = {step.path: step for step in plan.walk()}
         self.values = {path: step.values for path, step in self.steps.items()}

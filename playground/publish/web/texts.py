@@ -44,6 +44,18 @@ class Texts:
             self.includes.setdefault(self._name(file, folder), {})[written] = self._name(target, folder)
         return self._name(source.path, folder)
 
+    def lines_of(self, source: SourceText, folder: str, label: str) -> dict[tuple[str, int], tuple[str, int]]:
+        """Return where each line of a text is: the name of its file here, and its number there.
+
+        By the absolute path and the number of the author's file.
+        """
+        name = self.add(source, folder, label)
+        if name != self._names.get(source.path):  # all of its lines are one text
+            return {(line.file, line.number): (name, at) for at, line in enumerate(source.lines, 1)}
+        return {
+            (line.file, line.number): (self._name(line.file, folder), line.number) for line in source.lines
+        }
+
     def add_file(self, path: str, text: str, folder: str) -> str:
         """Add a text that is no shader, such as a sketch's TOML; return its name."""
         name = self._name(path, folder)

@@ -102,10 +102,10 @@ def parts_of(packed: str) -> list[str]:
     return gzip.decompress(base64.b64decode(packed)).decode().split("\0")
 
 
-def script_of(folder: Path) -> Path:
+def script_of(folder: Path, entry: Path = ENGINE) -> Path:
     """Return the runtime with its engine as one script, bundled into a folder."""
     made = folder / "engine.js"
-    command = [str(NODE or shutil.which("node")), "build.mjs", str(ENGINE), str(made)]
+    command = [str(NODE or shutil.which("node")), "build.mjs", str(entry), str(made)]
     subprocess.run(command, cwd=HOME, check=True, capture_output=True)
     return made
 
@@ -114,9 +114,13 @@ class Pages:
     """One page with the runtime in it, until the block ends."""
 
     def __init__(
-        self, folder: Path, flags: Sequence[str] = MESA, browser: type[Firefox] | None = None
+        self,
+        folder: Path,
+        flags: Sequence[str] = MESA,
+        browser: type[Firefox] | None = None,
+        entry: Path = ENGINE,
     ) -> None:
-        script = script_of(folder).read_text(encoding="utf-8")
+        script = script_of(folder, entry).read_text(encoding="utf-8")
         page = folder / "page.html"
         page.write_text(f"<!doctype html><meta charset=utf-8><script>{script}\n{_HARNESS}</script>", "utf-8")
         profile = folder / "profile"

@@ -14,6 +14,7 @@ TABLES = {
     "editor_words.js": "EDITOR_WORDS",
     "book_words.js": "BOOK_WORDS",
     "notebook_sketch.js": "NOTEBOOK_WORDS",
+    "trace_words.js": "TRACE_WORDS",
 }
 FILES = {
     path: path.read_text("utf-8") for path in RUNTIME.glob("*.js") if not path.name.endswith("_words.js")

@@ -34,7 +34,8 @@ import { texelsOf } from "./textures.js";
  *  @property {(kernel: import("./schema.js").Kernel) => import("./kernel_texts.js").KernelText} text
  *  @property {(step: Step) => number} samples
  *  @property {(text: import("./kernel_texts.js").KernelText, width: number, height: number) => number} rows
- *  @property {() => void} cancel   give up this run: another needs what it is at */
+ *  @property {() => void} cancel   give up this run: another needs what it is at
+ *  @property {(job: Job, made: Result) => void} [computed]   a step of a loop has run, and its inputs are there */
 
 /** A generator of pieces of work. @template T
  *  @typedef {Generator<any, T, boolean | undefined>} Working */
@@ -342,7 +343,8 @@ export const createExecution = (plan, nodes, around) => {
       return;
     }
     const inputs = new Map(node.inputs.map(([name, source]) => [name, inputOf(node, name, source, fed)]));
-    const made = yield* compute(jobOf(node, inputs, at, null));
+    const job = jobOf(node, inputs, at, null), made = yield* compute(job);
+    around.computed?.(job, made);
     owned.set(node.path, made);
     results.set(node.path, made);
   };
@@ -386,6 +388,13 @@ export const createExecution = (plan, nodes, around) => {
 
   return {
     ran, all,
+
+    /** Return what a step outside of loops is run with. @param {Step} step @returns {Job} */
+    job: (step) =>
+      jobOf(step, new Map(step.inputs.map(([name, source]) => [name, wiredTo(source, new Map())])), null, null),
+
+    /** Return what a pass has computed. @param {string} path @returns {Result} */
+    result: (path) => /** @type {Result} */ (results.get(path)),
 
     /** Return a texture of a pass, if that has run. @param {Ref} ref */
     known: (ref) => (results.has(ref.path) ? wiredTo(ref, new Map()) : null),

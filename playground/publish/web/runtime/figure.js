@@ -352,6 +352,20 @@ export function createFigure(host, engine, page, options) {
     /** Draw no more pixels than these from now on. @param {number} pixels */
     shrink(pixels) { budget = pixels; },
     showMap: map.show,
+    /** The pass and the texel that a place shows; null where it shows none.
+     *  @param {[number, number]} place [CSS pixels] from the upper left
+     *  @returns {{path: string, texel: [number, number]} | null} */
+    pick(place) {
+      if (session.map) {
+        const texel = map.texel(place);
+        return texel && { path: session.map.path, texel };
+      }
+      const plan = held.now?.plan, size = plan?.steps?.get(plan.picture.path)?.size, room = box();
+      if (!size) return null;
+      const at = place.map((part, axis) => Math.floor((part / room[axis]) * size[axis]));
+      const [x, y] = at.map((each, axis) => Math.min(Math.max(each, 0), size[axis] - 1));
+      return { path: plan.picture.path, texel: [x, size[1] - 1 - y] };
+    },
     fitMap: map.fit,
     get player() { return held.now; },
     get playing() { return playing; },

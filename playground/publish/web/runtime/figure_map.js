@@ -123,6 +123,12 @@ export function createFigureMap({ session, words, canvas, context, readout, box,
     zoom: (notches, x, y) =>
       look(zoomedView(view, sheetSize(), room(), NOTCH ** -notches, [x * density(), y * density()])),
     reset: () => look(WHOLE),
+    /** The texel under a place; null outside the map. @param {[number, number]} place CSS pixels */
+    texel([x, y]) {
+      const { map } = session, size = map && player()?.plan?.steps?.get(map.path)?.size;
+      const at = /** @type {[number, number]} */ ([x * density(), y * density()]);
+      return size ? texelAt(at, room(), view, sheetSize(), size) : null;
+    },
     /** @param {[number, number] | null} place CSS pixels */
     hover(place) {
       pointer = place ?? pointer;

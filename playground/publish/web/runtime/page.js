@@ -34,6 +34,7 @@ function start() {
   const made = createPage(main, page, engine, {
     words, poster, repeats, prepare: (player) => code.prepare(/** @type {any} */ (player)),
     openCode: (tab, player) => void code.open(tab, /** @type {any} */ (player)),
+    trace: /** @type {any} */ (globalThis).playgroundTrace,
   });
   made.figure.stage.append(notices);
   code.watch();

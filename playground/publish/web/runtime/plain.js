@@ -246,13 +246,11 @@ export const createPlain = (context, textures, images, binder, kernels) => {
     setUniform(gl, program, name, count * length === 1 ? all[0] : all);
   };
 
-  /** Run a plain shader; the result is the caller's.
-   *  @param {Job} job @returns {import("./kernels.js").Work} */
-  const run = function* (job) {
-    const { step, text, given } = job, { kernel } = step;
-    const program = kernels.programOf(job), reads = kernels.readsOf(job), inputs = new Map();
+  /** Set all that a plain shader is given.
+   *  @param {import("./programs.js").Program} program @param {Job} job */
+  const prepare = (program, job) => {
+    const { step, text, given } = job, { kernel } = step, reads = kernels.readsOf(job), inputs = new Map();
     for (const input of kernel.inputs) inputs.set(input.name, { ...shaped(input, job, reads), input });
-    const result = kernels.empty(step, job.tall);
     /** @type {Map<string, number[]>} */
     const sizes = new Map();
     /** @type {Set<string>} */
@@ -293,6 +291,14 @@ export const createPlain = (context, textures, images, binder, kernels) => {
         unit = bind(unit, texture, SHAPES[type], element ? element.input.sampling : PLAIN);
       }
     }
+  };
+
+  /** Run a plain shader; the result is the caller's.
+   *  @param {Job} job @returns {import("./kernels.js").Work} */
+  const run = function* (job) {
+    const { step, text } = job, { kernel } = step;
+    const program = kernels.programOf(job), result = kernels.empty(step, job.tall);
+    prepare(program, job);
     textures.drawTo(result);
     gl.viewport(0, 0, ...step.size);
     gl.bindVertexArray(null);
@@ -306,5 +312,5 @@ export const createPlain = (context, textures, images, binder, kernels) => {
     constants.clear();
   };
 
-  return { run, clear };
+  return { run, prepare, clear };
 };

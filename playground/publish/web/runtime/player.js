@@ -1,6 +1,7 @@
 // player.js -- one sketch in an engine: its state, its picture, its texts.
 
 import { PLAIN } from "./binder.js";
+import { createCache } from "./cache.js";
 import { failure } from "./context.js";
 import { readTexture } from "./draws.js";
 import { tried } from "./edits.js";
@@ -170,12 +171,23 @@ const createEyeHeight = (namesOf) => {
  *  @property {(context2d: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D) => void} drawTo
  *  @property {() => Uint8Array} picture             RGBA, row 0 south
  *  @property {(ref: Ref) => {size: [number, number], channels: number, data: Float32Array}} read
+ *  @property {(path: string, iteration: number | null, visitor: Visitor) => Visited} visit   run a pass
+ *  again, up to an iteration of its repeat or of the loop around it; null: the last
  *  @property {(file: string, text: string) => Promise<import("./edits.js").Edit>} edit
  *  @property {() => import("./programs.js").Program[]} programs   that it may need again
  *  @property {() => void} forget                    what lived in a context that was lost
  *  @property {() => void} close */
 
+/** What is done with a pass that ran: `read` its textures, then `run` it once more; of a repeat with the
+ *  textures before that iteration.
+ *  @typedef {object} Visitor
+ *  @property {(made: import("./textures.js").Result, step: Step) => void} read
+ *  @property {(job: import("./kernels.js").Job, before: import("./textures.js").Result | null,
+ *             iteration: number) => void} run */
+/** @typedef {{iteration: number, total: number}} Visited */
+
 const SLICE = 12; // [ms]
+const CACHE_OF_VISIT = 256 * 2 ** 20; // bytes
 const OWN = ["show", "copy.frag"]; // the engine's programs that any picture may need
 const SEEN = new Set(["eye", "clip_from_world", "world_from_clip"]); // given names that the camera changes
 
@@ -247,12 +259,12 @@ export const createPlayer = (engine, sketch, onClose) => {
   };
 
   /** Run what a texture of a plan needs. @param {Plan} plan @param {Ref} ref @param {number} budget [ms]
-   *  @param {() => void} stop */
-  const executed = function* (plan, ref, budget, stop) {
+   *  @param {() => void} stop @param {Partial<import("./execution.js").Around>} [other] than usual */
+  const executed = function* (plan, ref, budget, stop, other = {}) {
     const keys = keysFor(plan), { parts, clock } = engine;
     const execution = createExecution(plan, needed(plan.nodes, ref), {
       keys, ...parts, gl: parts.context.gl, given: givenBy(plan), text: textOf, samples: samplesOf,
-      rows: (text, width, height) => clock.rows(text, width, height, budget), cancel: stop,
+      rows: (text, width, height) => clock.rows(text, width, height, budget), cancel: stop, ...other,
     });
     yield* execution.all();
     return { plan, keys, execution };
@@ -422,6 +434,38 @@ export const createPlayer = (engine, sketch, onClose) => {
         size: texture.size, channels: textures.formats(texture.format).channels,
         data: readTexture(context, textures, texture),
       };
+    },
+
+    visit: (path, wanted, { read: look, run }) => {
+      stop();
+      const state = { ...player.state, map: null, interpolated: false }, whole = makePlan(sketch, state);
+      const step = whole.steps.get(path), loop = whole.nodes.filter(isLoop).find((node) =>
+        stepsOf([node]).some((inside) => inside.path === path));
+      if (!step) throw failure("sketch", `There is no pass '${path}'.`);
+      const repeats = step.kernel.kind === "kernel" && step.kernel.repeat !== 1;
+      if (loop && repeats) throw failure("sketch", `Pass '${path}' repeats inside a loop.`);
+      const total = loop ? loop.repeat : repeats ? step.repeat : 1, ref = { path, output: step.kernel.outputs[0].name };
+      if (!total) throw failure("sketch", `Pass '${path}' has not run yet.`);
+      const iteration = Math.min(Math.max(wanted ?? total - 1, 0), total - 1);
+      /** @param {number} count iterations after which the repeat stops */
+      const upTo = (count) =>
+        makePlan(sketch, { ...state, steps: { ...state.steps, [loop ? loop.path : path]: count } });
+      if (loop) { // of what a loop ran for its earlier iterations nothing is left
+        const cache = createCache(CACHE_OF_VISIT, engine.parts.textures);
+        drained(executed(upTo(iteration + 1), ref, 0, () => {}, { cache, computed: (job, made) => {
+          if (job.step.path !== path || job.around?.number !== iteration) return;
+          look(made, job.step);
+          run(job, null, iteration);
+        } }));
+        cache.clear();
+      } else {
+        const plan = repeats ? upTo(iteration + 1) : whole;
+        const after = drained(executed(plan, ref, 0, () => {})).execution;
+        look(after.result(path), step);
+        const before = repeats ? drained(executed(upTo(iteration), ref, 0, () => {})).execution : after;
+        run(before.job(step), repeats ? before.result(path) : null, iteration);
+      }
+      return { iteration, total };
     },
 
     edit: async (file, text) => {

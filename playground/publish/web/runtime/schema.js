@@ -73,7 +73,17 @@
  *  @property {string} [dialect]
  *  @property {string[]} extensions                 of GLSL ES that its text needs, if any
  *  @property {Stage} vertex
- *  @property {Stage} fragment */
+ *  @property {Stage} fragment
+ *  @property {TracedText | {lacks: string}} [trace]   its traced fragment shader, or why it has none */
+
+/** A fragment shader that records what it does (engine/trace), and the table of the places that record.
+ *  @typedef {object} TracedText
+ *  @property {string} text              in desktop GLSL
+ *  @property {boolean} quads            four fragments run the texels of a quad, so that derivatives are exact
+ *  @property {[string, string, string, string, number, number, number, number[]][]} places   of each its kind,
+ *      its name, its function, its type, the number of its file, its line, the last one, the loops around it
+ *  @property {import("./trace_values.js").Structs} structs
+ *  @property {string[]} files           in `Shared.files`, that it is made of */
 
 /** A leaf pass.
  *  @typedef {object} Leaf

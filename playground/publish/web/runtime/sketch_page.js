@@ -21,6 +21,7 @@ const LINES = {
   keys: "M5.500 6a2.500 2.500 0 1 1 3.700 2.200C8.300 8.700 8 9.200 8 10M8 12.800v.4",
   theme: "M8 2a6 6 0 1 0 0 12V2ZM8 2a6 6 0 0 1 0 12",
   panel: "M2 3h12v10H2ZM10 3v10",
+  trace: "M3 2.500h10M3 6h4M9.500 6H13M3 9.500h4M9.500 9.500H13M3 13h10",
 };
 
 /** A button with a picture; its label is for those who do not see it, and a tooltip.
@@ -92,6 +93,7 @@ const KEYS = [
   ["m", "map", "keyMap"],
   ["s", "save", "keySave"],
   ["p", "panel", "keyPanel"],
+  ["t", "trace", "keyTrace"],
   ["/", "search", "keySearch"],
   ["f", "full", "keyFull"],
   ["?", "help", "keyHelp"],
@@ -130,16 +132,18 @@ function followKeys(document, acts, canvas) {
   });
 }
 
-/** Make the list of keys, a dialog. @param {Words} words */
+/** Make the list of keys, a dialog: those that have words, for not every page has all.
+ *  @param {Words} words */
 function keysDialog(words) {
+  const keys = KEYS.filter(([, , meaning]) => words[meaning]);
   const line = (/** @type {string} */ keys, /** @type {string} */ meaning) => [
     make("dt", {}, ...keys.split(" | ").map((key) => make("kbd", {}, key))),
     make("dd", {}, meaning),
   ];
   const named = new Map(
-    KEYS.map(([, , meaning]) => [
+    keys.map(([, , meaning]) => [
       meaning,
-      KEYS.filter((key) => key[2] === meaning)
+      keys.filter((key) => key[2] === meaning)
         .map(([key]) => (key === " " ? words.space : key.toUpperCase()))
         .join(" | "),
     ]),
@@ -222,7 +226,11 @@ function recallTheme() {
  *  @property {(player: Player) => unknown} [prepare]            what a player needs before its first picture
  *  @property {(player: Player) => Map<string, number>} repeats  iterations in all, by path
  *  @property {(host: HTMLElement, player: Player, figure: Figure) => void} [openCode]
- *                                                     fills the code's tab, once for each player */
+ *                                                     fills the code's tab, once for each player
+ *  @property {(engine: Engine, figure: Figure, open: () => void) => TraceTab} [trace]
+ *                                                     in a page with traced texts: trace.js */
+/** @typedef {{label: string, tool: string, keyTrace: string, element: HTMLElement,
+ *             toggle: () => boolean}} TraceTab */
 
 const STAYS = 4000; // [ms] of a notice
 const OFTEN = 250; // [ms] between two reports of a picture that moves
@@ -230,7 +238,7 @@ const OFTEN = 250; // [ms] between two reports of a picture that moves
 /** Fill a page's main element. @param {HTMLElement} main @param {Page} page @param {Engine} engine
  *  @param {PageOptions} options */
 export function createPage(main, page, engine, options) {
-  const { words, poster = null, prepare, repeats, openCode } = options;
+  const { words, poster = null, prepare, repeats, openCode, trace } = options;
   const session = createSession(page.sketches);
   const still = matchMedia("(prefers-reduced-motion: reduce)");
   const view = make("section", { className: "view", "aria-label": words.ownPicture });
@@ -287,7 +295,6 @@ export function createPage(main, page, engine, options) {
 
   // ── its tools ──────────────────────────────────────────────────────────────
 
-  const help = keysDialog(words);
   const full = createFullScreen(main, (isFull) => {
     fullTool.title = isFull ? words.leaveFull : words.full;
     fullTool.setAttribute("aria-label", fullTool.title);
@@ -323,14 +330,31 @@ export function createPage(main, page, engine, options) {
     code.replaceChildren();
     openCode(code, player, figure);
   }
+  const traced = trace?.(engine, figure, () => {
+    main.classList.remove("alone");
+    tabs?.select(2);
+  });
+  const traceTool = traced && iconButton("trace", `${traced.tool} (T)`, toggleTrace);
+  function toggleTrace() {
+    const isOn = traced?.toggle();
+    traceTool?.setAttribute("aria-pressed", String(isOn));
+  }
+  if (traceTool) {
+    traceTool.setAttribute("aria-pressed", "false");
+    tools.insertBefore(traceTool, tools.children[1]);
+  }
+  const help = keysDialog({ ...words, ...(traced && { keyTrace: traced.keyTrace }) });
   const header = make("header", {}, title);
-  const tabs = openCode && createTabs([[words.parameters, panel.element], [words.code, code]], (at) => {
-    main.classList.toggle("coding", at === 1);
+  /** @type {[string, HTMLElement][]} */
+  const pages = [[words.parameters, panel.element], [words.code, code]];
+  if (traced) pages.push([traced.label, Object.assign(traced.element, { id: "playground-trace" })]);
+  const tabs = openCode && createTabs(pages, (at) => {
+    main.classList.toggle("coding", at > 0);
     fillCode();
   });
   if (tabs) header.append(tabs.element);
   const side = make("section", { className: "side", "aria-label": words.parameters });
-  side.append(header, panel.element, code, info);
+  side.append(header, ...pages.map(([, page]) => page), info);
   const onPaper = make("pre", { className: "on-paper" });
   main.append(view, side, help, onPaper);
   addEventListener("beforeprint", () => {
@@ -363,6 +387,7 @@ export function createPage(main, page, engine, options) {
       on: () => step(1),
       start: () => session.setTime(0),
       map: () => showTexture(shownTexture() + 1),
+      ...(traced ? { trace: toggleTrace } : {}),
       search() {
         main.classList.remove("alone");
         tabs?.select(0);
@@ -374,5 +399,5 @@ export function createPage(main, page, engine, options) {
   }, figure.canvas);
   recallTheme();
   address.read();
-  return { figure, panel, session, timeline, showCode: () => tabs?.select(1) };
+  return { figure, panel, session, timeline, traced, showCode: () => tabs?.select(1) };
 }
