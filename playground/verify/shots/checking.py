@@ -16,7 +16,7 @@ from __future__ import annotations
 import os
 import shlex
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NoReturn, TypeVar
@@ -25,12 +25,14 @@ import pytest
 
 from playground.engine.context import ContextInfo
 from playground.engine.plain_forms import PlainForms, silent
+from playground.engine.process.worker import UnexpectedError
 from playground.errors import (
     ContextError,
     DataError,
     PlaygroundError,
 )
 from playground.paths import shown
+from playground.verify.shots.first_difference import NoTrace, search_for
 from playground.verify.shots.names import Claim, Claims, keeping, writing
 from playground.verify.shots.plugin_constants import (
     FIXTURE,
@@ -108,6 +110,10 @@ def _take_failures(node: pytest.Item) -> str:
 # ── checks ───────────────────────────────────────────────────────────────────
 
 
+TRACE_SECONDS = 60.0
+"""[s] that the failures of one process may take to be traced."""
+
+
 Result = TypeVar("Result")
 
 
@@ -152,6 +158,7 @@ class Checker:
         self._failed = self.recorder.failed() if config.getoption(UPDATE_FAILED) else None
         self.claims = Claims(self.recorder.run)
         self._plain_forms: PlainForms | None = None
+        self._seconds_to_trace = TRACE_SECONDS
         self._written: set[Path] = set()
 
     def close(self) -> None:
@@ -183,11 +190,13 @@ class Checker:
             return self.record_missing(node, case, outcome, start)
         command = self.accepting(node, outcome)
         stands_in = self._stands_in(outcome)
-        unrecorded = self.recorder.record(node, outcome, time.perf_counter() - start, command, stands_in)
+        traced = () if outcome.ok else self._traced(case, outcome)
+        seconds = time.perf_counter() - start
+        unrecorded = self.recorder.record(node, outcome, seconds, command, stands_in, traced)
         if outcome.ok and outcome.tolerance and not (outcome.tolerated or self.updating):
             line = f"{case}: the tolerance is not needed: the picture passes without it"
             node.user_properties.append((SUMMARY_LINE, line))
-        return "" if outcome.ok else _joined(self._explained(node, outcome), unrecorded)
+        return "" if outcome.ok else _joined(self._explained(node, outcome, traced), unrecorded)
 
     def claim(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo, own: bool) -> str:
         """Return why a test may not check a picture under its name, which another test has; else ""."""
@@ -371,7 +380,27 @@ class Checker:
             line = f"removed {shown(other)}  (it let the picture before this one pass)"
             node.user_properties.append((SUMMARY_LINE, line))
 
-    def _explained(self, node: pytest.Item, outcome: Outcome) -> str:
+    def _traced(self, case: ShotCase, outcome: Outcome) -> tuple[str, ...]:
+        """Return lines that name the first value that differs from the reference's run, or why none do."""
+        reference, seen = outcome.reference, outcome.perceived
+        position = seen.place if seen is not None else outcome.comparison.position
+        if position is None or reference is None or self.updating or case.shot not in case.sketch.shots:
+            return ()
+        start = time.perf_counter()
+        try:
+            if self._seconds_to_trace <= 0.0:
+                raise NoTrace(f"the shots before it took the {TRACE_SECONDS:g} s that a run has for that")
+            same_build = outcome.fingerprint.same_build(reference.fingerprint)
+            search = search_for(case.sketch, case.shot, reference, position, same_build=same_build)
+            return self.renderer_process.locate(search).lines
+        except PlaygroundError as error:
+            return (f"no trace: {error.diagnostics[0].message}",)
+        except UnexpectedError:  # a trace explains a failure, and is none itself
+            return ("no trace: the process that draws could not make it",)
+        finally:
+            self._seconds_to_trace -= time.perf_counter() - start
+
+    def _explained(self, node: pytest.Item, outcome: Outcome, traced: Sequence[str]) -> str:
         lines = [f"{outcome.case}: {outcome.message}"]
         if self.updating and not VERDICTS[outcome.word].acceptable:
             lines.append("    not written: a broken picture is never a reference")
@@ -379,6 +408,8 @@ class Checker:
             lines.append("    not written: it had not failed before")
         lines.append(f"    reference   {shown(outcome.path)}")
         lines += [f"                {line}" for line in outcome.differences]
+        heads = ["first other", *[""] * len(traced)]
+        lines += [f"    {head:<11} {line}" for head, line in zip(heads, traced, strict=False)]
         lines += [f"    {word:<11} {path}" for word, path in self.recorder.pictures(outcome.case)]
         command = self.accepting(node, outcome)
         if command:

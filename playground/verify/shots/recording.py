@@ -62,11 +62,18 @@ class Recorder:
         self._earlier: dict[str, list[Record]] = {}  # by place: records that were there at the first look
 
     def record(
-        self, node: pytest.Item, outcome: Outcome, seconds: float, command: str, stands_in: str = ""
+        self,
+        node: pytest.Item,
+        outcome: Outcome,
+        seconds: float,
+        command: str,
+        stands_in: str = "",
+        traced: tuple[str, ...] = (),
     ) -> str:
         """Write the record of a picture that was compared, with the pictures unless it passed.
 
-        ``stands_in`` says whose references stood in for those of the picture's renderer.
+        ``stands_in`` says whose references stood in for those of the picture's renderer, ``traced`` where its
+        run parts from the reference's.
         Where it cannot be written, that is returned, a message, and goes to the summary; else "".
         """
         comparison, perceived, reference = outcome.comparison, outcome.perceived, outcome.reference
@@ -83,6 +90,7 @@ class Recorder:
             place=perceived.place if perceived else comparison.position,
             numbers=_numbers(outcome),
             fingerprint=outcome.differences,
+            traced=traced,
             rules=Rules(
                 tier=outcome.tier,
                 tolerance=str(outcome.tolerance or ""),

@@ -25,6 +25,7 @@ A checked shot tells of itself in ``--junitxml``, too: a property each, beginnin
     shot.renderer               what drew it, as the folders of references are named
     shot.reference              the reference that it was held against
     shot.stands-in              whose references stood in for that renderer's, if any did
+    shot.trace                  the first line whose value is another than in the reference's run
     shot.score.<number>         what was measured, with its unit, as the report has it
     shot.picture.<word>         its pictures, unless it passed: actual, expected, difference, flip, masked
 
@@ -56,7 +57,7 @@ from playground.verify.shots.verdicts import verdict_on
 # ── records ──────────────────────────────────────────────────────────────────
 
 
-FORMAT = 3
+FORMAT = 4
 """What a record's ``format`` says; a record of another is refused in words."""
 
 FOLDER = REPORT
@@ -135,6 +136,7 @@ class Record:
     numbers: dict[str, float] = field(default_factory=dict)  # what was measured, by name with its unit
     place: tuple[int, int] | None = None  # [pixels] x and y, from the top left, of the worst one
     fingerprint: tuple[str, ...] = ()  # how what drew the two differs, a message each
+    traced: tuple[str, ...] = ()  # the first line whose value is another than in the reference's run
     error: str = ""  # what the child process printed before it failed
     folder: str = ""  # its folder here, where a sketch of the same name has the plain one; else ""
     rules: Rules = Rules()
@@ -483,6 +485,7 @@ def properties_of(folder: Path, record: Record) -> list[tuple[str, object]]:
         "shot.renderer": record.renderer,
         "shot.reference": record.expected.reference,
         "shot.stands-in": record.expected.stands_in,
+        "shot.trace": "; ".join(record.traced),
         **{f"shot.score.{name}": f"{value:.6g}" for name, value in record.numbers.items()},
         **{
             f"shot.picture.{word}": (folder.relative_to(root) / name).as_posix()

@@ -42,6 +42,7 @@ from playground.verify.shots.compare import (
     mask_of,
     striped,
 )
+from playground.verify.shots.first_difference import Difference, Search, locate
 from playground.verify.shots.flip import flip_picture
 from playground.verify.shots.judge import (
     Judgement,
@@ -312,10 +313,19 @@ class RendererProcess(PoolOwner):
         assert isinstance(frame, RenderedShot)
         return frame
 
-    def _ask(self, request: object, what: str = "") -> object:
+    def locate(self, search: Search) -> Difference:
+        """Return where a shot parts from its reference's run.
+
+        Raises ``NoTrace`` where that cannot be said, else as ``render`` does.
+        """
+        found = self._ask(search, f"tracing {search.sketch.name}/{search.shot.name}", 4 * search.seconds)
+        assert isinstance(found, Difference)
+        return found
+
+    def _ask(self, request: object, what: str = "", limit: float | None = None) -> object:
         if self._refusal is not None:
             raise self._refusal
-        outcome = self._pool.run(request, seconds=self.limit)
+        outcome = self._pool.run(request, seconds=limit or self.limit)
         self._printed += outcome.printed
         if not outcome.started:
             self._refusal = outcome.failure(what)
@@ -334,4 +344,8 @@ def open_service(parent: Parent, renderer: str) -> Service:
         if renderer != "either":
             raise
         engine = open_engine(notice=silent)
-    return Service(partial(render_shot, engine), engine.info)
+    return Service(partial(_answer, engine), engine.info)
+
+
+def _answer(engine: Engine, request: ShotCase | Search) -> RenderedShot | Difference:
+    return render_shot(engine, request) if isinstance(request, ShotCase) else locate(engine, request)

@@ -14,6 +14,7 @@ import pytest
 
 # A run of pytest inside pytest forgets the modules that it imports first, so these are imported here.
 from playground.verify.shots import checking, collect, fixture  # noqa: F401
+from playground.verify.shots.first_difference import Difference, Search
 from playground.verify.shots.references import Fingerprint
 from playground.verify.shots.suite import RenderedShot, RendererProcess, ShotCase
 from playground.verify.shots.verdicts import VERDICTS
@@ -89,6 +90,9 @@ class Lent:
         if case.shot.name in self._ends:
             raise self._ends[case.shot.name]
         return self._process.render(case)
+
+    def locate(self, search: Search) -> Difference:
+        return self._process.locate(search)
 
     def printed(self) -> str:
         return self._process.printed()

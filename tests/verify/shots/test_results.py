@@ -47,6 +47,7 @@ FULL = record_of(
         texts={"renderer": "llvmpipe (LLVM 15.0.6)", "sketch": "hills – Hügel"},
         expected_texts={"renderer": "llvmpipe (LLVM 14.0.0)"},
         fingerprint=("LLVM 15.0.6 drew it now, LLVM 14.0.0 the reference",),
+        traced=("land.glsl:9: lit = 0.5, in the reference's run 0.4  (pass light, texel (3, 4))",),
         root="/a/terrain",
         home="screenshots",
         compared="dawn.2.png",
@@ -79,7 +80,7 @@ OTHER = replace(FULL, folder="hills & dales-1a2b3c4d")
 def test_a_record_comes_back_as_it_was(record: Record) -> None:
     text = to_json(record)
     assert from_json(text) == record
-    assert json.loads(text)["format"] == 3
+    assert json.loads(text)["format"] == 4
 
 
 def test_a_result_is_there_with_its_pictures_and_again_without(tmp_path: Path) -> None:

@@ -115,6 +115,7 @@ def failure(record: Record, setting: ShotPageContext) -> Markup:
         tag("p", _verdict(record), class_="verdict"),
         tag("p", " ".join(filter(None, explained)), class_="meaning") if any(explained) else None,
         _rules(record),
+        _traced(record),
         _error(record),
         tag("div", class_="viewer", hidden=True),
         _pictures(record, setting),
@@ -243,6 +244,14 @@ def _rules(record: Record) -> Markup | None:
     said = [(name, value) for name, value in _rule(record) if value]
     items = [tag("li", tag("strong", name), f": {value}") for name, value in said]
     return tag("ul", *items, class_="rules") if items else None
+
+
+def _traced(record: Record) -> Markup | None:
+    """Return the first line whose value is another than in the reference's run, or why there is none."""
+    if not record.traced:
+        return None
+    lines = tag("pre", "\n".join(record.traced))
+    return tag("section", tag("h3", "First value that differs"), lines, class_="traced")
 
 
 def _rule(record: Record) -> tuple[tuple[str, str], ...]:
