@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 from playground.paths import GLSL
 from playground.shader.kernel import Export
@@ -23,9 +24,19 @@ class Map:
     ref: str  # "pass[.inner…]:output"
     values: tuple[tuple[str, Value], ...] = ()  # of view/map's parameters
     kernel: Kernel = field(default_factory=lambda: map_kernel(), compare=False)
+    is_remembered: ClassVar[bool] = True  # the next window shows it as well
+
+    def base_of(self, sketch: Sketch) -> Sketch:
+        """Return the sketch that has the texture."""
+        return sketch
+
+    def can_show(self, sketch: Sketch) -> bool | None:
+        """Return whether a sketch has the texture; None where its plan says so."""
+        return None
 
     def of(self, sketch: Sketch) -> Sketch:
         """Return the sketch with this map for its view."""
+        sketch = self.base_of(sketch)
         view = sketch.graph.find("view")
         if re.match(r"view\b", self.ref) and view is not None:
             return _within(sketch, view, self)
