@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from playground.paths import GLSL
 from playground.shader.kernel import Export
@@ -12,6 +12,10 @@ from playground.sketch.flat import Flat
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Value
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import input_names
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 USE = "view/map"
 _INNER = "seen"  # the name of the view inside the one that shows a texture of it
@@ -26,6 +30,11 @@ class Map:
     kernel: Kernel = field(default_factory=lambda: map_kernel(), compare=False)
     is_remembered: ClassVar[bool] = True  # the next window shows it as well
 
+    @property
+    def private_refs(self) -> tuple[str, ...]:
+        """Textures that are there for this map alone, so that no other can show them."""
+        return ()
+
     def base_of(self, sketch: Sketch) -> Sketch:
         """Return the sketch that has the texture."""
         return sketch
@@ -33,6 +42,10 @@ class Map:
     def can_show(self, sketch: Sketch) -> bool | None:
         """Return whether a sketch has the texture; None where its plan says so."""
         return None
+
+    def own_numbers(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return what of the texture's values, (ny, nx) or (ny, nx, components), its range is fitted to."""
+        return values
 
     def of(self, sketch: Sketch) -> Sketch:
         """Return the sketch with this map for its view."""

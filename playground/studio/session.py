@@ -131,7 +131,10 @@ class Session:
     @property
     def refs(self) -> list[str]:
         """Every texture that a map can show."""
-        return refs_of(self.plan.flat) if self.plan is not None else []
+        if self.plan is None:
+            return []
+        private = self.view.map.private_refs if self.view.map is not None else ()
+        return [ref for ref in refs_of(self.plan.flat) if ref not in private]
 
     @property
     def repeats(self) -> dict[str, int]:
@@ -165,6 +168,11 @@ class Session:
     def can_show(self, ref: str) -> bool:
         """Say whether a map can show a texture: one of ``refs``, or one of the view itself."""
         return ref in self.refs or (self.sketch is not None and in_view(self.sketch, ref))
+
+    def _has(self, shown: Map, sketch: Sketch) -> bool:
+        """Return whether a sketch has the texture of a map."""
+        has = shown.can_show(sketch)
+        return self.can_show(shown.ref) if has is None else has
 
     # ── changes ──────────────────────────────────────────────────────────────
 
@@ -326,7 +334,7 @@ class Session:
         if shown is not None and self.sketch is not None:
             values = self.read_values(shown.ref)
             if values is not None or not self.engine.runner.works.at_work:
-                self.view.show(fitted(shown, values) if values is not None else None)
+                self.view.show(fitted(shown, shown.own_numbers(values)) if values is not None else None)
 
     def read_values(self, ref: str) -> NDArray[np.float32] | None:
         """Return a texture's values as the picture has them, row 0 south; None, and a note, if that fails.
@@ -339,7 +347,8 @@ class Session:
         stops, fills = self.view.stops(self.sketch, now), self.view.interpolated
         engine.options.patience = float("inf")  # loops run to their end
         try:
-            return engine.read(self.sketch, ref, time=now, steps=stops, interpolated=fills)
+            sketch = self.view.map.base_of(self.sketch) if self.view.map is not None else self.sketch
+            return engine.read(sketch, ref, time=now, steps=stops, interpolated=fills)
         except (PlaygroundError, SourceUnfinished) as error:
             self.notes.append(str(error))
             return None
@@ -463,7 +472,7 @@ class Session:
         time_alone = self._drawn is not None and key[:-1] == self._drawn[:-1]
         self._drawn, shown = key, self.view.map
         try:
-            if shown is not None and not self.can_show(shown.ref):
+            if shown is not None and not self._has(shown, sketch):
                 self.notes.append(f"{shown.ref} is gone, so the sketch's own view is shown")
                 self.view.map = shown = None
             self._draw(shown.of(sketch) if shown else sketch, size, **how)

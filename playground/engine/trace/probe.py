@@ -14,6 +14,9 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from playground.errors import PlaygroundError, ShaderError, SketchError, nearest
 from playground.memo import GRAPHS
 from playground.paths import shown
@@ -40,7 +43,8 @@ from playground.shader.syntax.nodes import (
 )
 from playground.shader.syntax.parser import Tree, parse
 from playground.sketch.map_sketch import Map
-from playground.sketch.model import Graph, Sketch, Technique
+from playground.sketch.model import Graph, PassSpec, Sketch, Technique
+from playground.sketch.wiring import initial_names
 
 _ZEROS = {"float": "0.0", "int": "0", "uint": "0u", "bool": "false"}
 _VECTORS = {"vec": "float", "ivec": "int", "uvec": "uint", "bvec": "bool"}
@@ -65,11 +69,28 @@ class ProbeMap(Map):
     """A map of a probe."""
 
     probe: Probe = Probe("", "", 0, "")
+    hits: str = "hits"  # the name of its second output
     is_remembered = False
+
+    @property
+    def hits_ref(self) -> str:
+        """The texture of how often the line ran, and in which run the probe was first not zero."""
+        return f"{self.probe.path}:{self.hits}"
+
+    @property
+    def private_refs(self) -> tuple[str, ...]:
+        """The probe's two textures."""
+        return self.ref, self.hits_ref
 
     def base_of(self, sketch: Sketch) -> Sketch:
         """Return the sketch with the probe's outputs."""
         return probed(sketch, self.probe)[0]
+
+    def own_numbers(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return the components up to the last that is not 0 throughout."""
+        used = [part for part in range(4) if values[..., part].any()]
+        count = max(used, default=0) + 1
+        return values[..., 0] if count == 1 else values[..., :count]
 
     def can_show(self, sketch: Sketch) -> bool | None:
         """Return whether the pass is still there, and the line still has a statement."""
@@ -82,8 +103,8 @@ class ProbeMap(Map):
 
 def map_of(sketch: Sketch, probe: Probe) -> ProbeMap:
     """Return the map of a probe; raise as ``probed``."""
-    _, output, _ = probed(sketch, probe)
-    return ProbeMap(f"{probe.path}:{output}", probe=probe)
+    _, output, hits = probed(sketch, probe)
+    return ProbeMap(f"{probe.path}:{output}", probe=probe, hits=hits)
 
 
 @GRAPHS.cached(identities=1)
@@ -117,16 +138,42 @@ def _changed(
     name, *rest = parts
     graphs = [technique, *(v.technique for v in technique.variants)]
     for graph in graphs:
-        if isinstance(graph, Graph) and any(spec.name == name for spec in graph.written.passes):
-            passes = tuple(
-                replace(spec, technique=_changed(spec.technique, rest, change, path))
-                if spec.name == name
-                else spec
-                for spec in graph.written.passes
-            )
-            return replace(graph.written, passes=passes, variants=())
+        spec = graph.written.find(name) if isinstance(graph, Graph) else None
+        if not isinstance(graph, Graph) or spec is None:
+            continue
+        if not rest and isinstance(spec.technique, Draw) and _goes_on_from_a_draw(spec, graph):
+            raise spec.error(f"pass '{path}' draws over another one, so it can have no probe of its own")
+        inner_technique = _changed(spec.technique, rest, change, path)
+        renamed = _renamed_inputs(spec.technique, inner_technique) if not rest else {}
+        renames = {".".join((*rest, old)): ".".join((*rest, new)) for old, new in renamed.items()}
+        changed = replace(
+            spec,
+            technique=inner_technique,
+            inputs=tuple((renames.get(key, key), ref) for key, ref in spec.inputs),
+            feedback=tuple((renames.get(key, key), ref) for key, ref in spec.feedback),
+        )
+        targets = {f"{name}.{old}": f"{name}.{new}" for old, new in renames.items()}
+        exports = tuple(
+            replace(export, targets=tuple(targets.get(target, target) for target in export.targets))
+            for export in graph.written.inputs
+        )
+        passes = tuple(changed if each is spec else each for each in graph.written.passes)
+        return replace(graph.written, passes=passes, inputs=exports, variants=())
     known = [s.name for g in graphs if isinstance(g, Graph) for s in g.passes]
     raise SketchError(f"no pass '{path}'{nearest(name, known)}")
+
+
+def _goes_on_from_a_draw(spec: PassSpec, graph: Graph) -> bool:
+    """Return whether a draw goes on from what another one of the same graph has drawn."""
+    before = dict(spec.inputs).get("initial", "").partition(":")[0]
+    other = graph.written.find(before.partition(".")[0])
+    return other is not None and ("." in before or isinstance(other.technique, Draw))
+
+
+def _renamed_inputs(before: Technique, after: Technique) -> dict[str, str]:
+    """Return the new name of each input that a repeat starts from: with several outputs each has its own."""
+    names = {output: name for name, output in initial_names(after).items()}
+    return {name: names[output] for name, output in initial_names(before).items() if output in names}
 
 
 # ── the text ──────────────────────────────────────────────────────────────────

@@ -168,6 +168,7 @@ class Autosave:
     def _drawn_of(self, draft: Draft) -> dict[str, Any]:
         """Return the fields of ``Remembered`` that hold a draft's edits, the map and the stopped repeats."""
         view = self.session.view
+        shown = view.map if view.map is not None and view.map.is_remembered else None
         if self._in_file[0] is not draft:
             paths = [path for path, _ in draft.edits.values]
             self._in_file = draft, tuple(file_values(draft.base, paths).items())
@@ -176,8 +177,8 @@ class Autosave:
             "edits": draft.edits,
             "in_file": self._in_file[1],
             "camera_in_file": camera,
-            "map": view.map.ref if view.map else "",
-            "map_values": view.map.values if view.map else (),
+            "map": shown.ref if shown else "",
+            "map_values": shown.values if shown else (),
             "steps": tuple(sorted(view.steps.items())),
         }
 
