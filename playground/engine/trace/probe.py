@@ -43,7 +43,7 @@ from playground.shader.syntax.nodes import (
 )
 from playground.shader.syntax.parser import Tree, parse
 from playground.sketch.map_sketch import Map
-from playground.sketch.model import Graph, PassSpec, Sketch, Technique
+from playground.sketch.model import Graph, Sketch, Technique
 from playground.sketch.wiring import initial_names
 
 _ZEROS = {"float": "0.0", "int": "0", "uint": "0u", "bool": "false"}
@@ -141,8 +141,6 @@ def _changed(
         spec = graph.written.find(name) if isinstance(graph, Graph) else None
         if not isinstance(graph, Graph) or spec is None:
             continue
-        if not rest and isinstance(spec.technique, Draw) and _goes_on_from_a_draw(spec, graph):
-            raise spec.error(f"pass '{path}' draws over another one, so it can have no probe of its own")
         inner_technique = _changed(spec.technique, rest, change, path)
         renamed = _renamed_inputs(spec.technique, inner_technique) if not rest else {}
         renames = {".".join((*rest, old)): ".".join((*rest, new)) for old, new in renamed.items()}
@@ -161,13 +159,6 @@ def _changed(
         return replace(graph.written, passes=passes, inputs=exports, variants=())
     known = [s.name for g in graphs if isinstance(g, Graph) for s in g.passes]
     raise SketchError(f"no pass '{path}'{nearest(name, known)}")
-
-
-def _goes_on_from_a_draw(spec: PassSpec, graph: Graph) -> bool:
-    """Return whether a draw goes on from what another one of the same graph has drawn."""
-    before = dict(spec.inputs).get("initial", "").partition(":")[0]
-    other = graph.written.find(before.partition(".")[0])
-    return other is not None and ("." in before or isinstance(other.technique, Draw))
 
 
 def _renamed_inputs(before: Technique, after: Technique) -> dict[str, str]:
