@@ -64,6 +64,7 @@ from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.remote.remotes import Remotes
 from playground.studio.session import Session
 from playground.studio.status import Status
+from playground.studio.trace.panel import TracePanel, act_on_picture, draw_mark
 from playground.studio.window import Window, WindowPlacement, wake
 
 if TYPE_CHECKING:
@@ -136,7 +137,10 @@ def run(
         session.notes.extend(filter(None, [complaint, unpacked]))
         autosave = Autosave(session, memory, remembered)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, autosave, SessionCaching(session, cache_limit), report)
+        tracer = stack.enter_context(Sandbox(software=software))
+        tracer.on_answer = wake
+        caching = SessionCaching(session, cache_limit)
+        live = Live(window, session, watcher, autosave, caching, report, tracer)
         live.remotes = remotes or stack.enter_context(Remotes())
         live.remotes.attach(live.bench, wake)
         if remembered.at is not None:
@@ -188,13 +192,14 @@ class Live:
         autosave: Autosave,
         caching: SessionCaching,
         report: Callable[[str], None],
+        tracer: Sandbox,
     ) -> None:
         self.window = window
         self.autosave = autosave
         self.caching = caching
         self.session = session
         self.follower = Follower(session, watcher)
-        self.panel = Panel()
+        self.panel, self.trace_panel = Panel(), TracePanel()
         self.place = WindowPlacement(lambda: window.handle)
         controls = WindowControls(
             quit=window.ask_to_close,
@@ -202,7 +207,8 @@ class Live:
             is_full=lambda: self.place.full,
             sign_held=lambda: window.sign_held,
         )
-        self.bench = Workbench(session, controls, opener=Opener(wake), size=remembered_size(), wake=wake)
+        opener, size = Opener(wake), remembered_size()
+        self.bench = Workbench(session, controls, opener=opener, size=size, wake=wake, trace_sandbox=tracer)
         self.drops = Drops(self.bench.actions)
         self.guard = Guard(self.bench.notices.say)
         self.terminal = TerminalErrors(report)
@@ -231,6 +237,7 @@ class Live:
             now = self.bench.notices.now()
             others = (
                 self.bench.inspection.patience(now),
+                self.bench.tracing.patience,
                 *(addition.patience for addition in self.additions),
             )
             patience = min(self._patience(), *others)
@@ -272,6 +279,7 @@ class Live:
     def release(self) -> None:
         """Release all that was made in the window's context."""
         self.bench.inspection.release()
+        self.bench.tracing.release()
         for addition in self.additions:
             addition.release()
         self.painter.release()
@@ -393,6 +401,7 @@ class Live:
     def _act(self, area: Area) -> None:
         if not drag_line(self.bench.inspection.compare, area):
             self.mouse.act(area, self.window.density)
+            act_on_picture(self.bench.tracing, self.session.picture.texture, area, self.window.density)
         self.bench.undo.record(held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
 
     def _picture(self, size: tuple[int, int]) -> moderngl.Texture | None:
@@ -420,8 +429,8 @@ class Live:
         bench, session, look, draw = self.bench, self.session, self.window.theme, self.guard.draw
         taken = draw("the bar of time", lambda: height_of_timeline(session, bench.interface, look), 0.0)
         above = (*area[:3], area[3] - taken)
-        finite = self.finite
-        draw("what is not finite", lambda: draw_not_finite(finite, session, look, above), None)
+        finite, tracing = self.finite, bench.tracing
+        draw("what is not finite", lambda: draw_not_finite(finite, session, tracing, look, above), None)
         errors = ErrorsList(bench.problems, bench.files, session, bench.interface)
         draw("the list of errors", lambda: errors.draw(look, above), None)
         if picture is None and session.error is None and session.catch_up.behind is None:
@@ -435,6 +444,9 @@ class Live:
             draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)
         view = bench, picture, look, area, self.window.density
         draw("what is shown over the picture", lambda: draw_inspection(*view), None)
+        self.guard.run("tracing", lambda: tracing.update(picture), None)
+        draw("the pinned texel", lambda: draw_mark(tracing, look, area), None)
+        draw("the trace", lambda: self.trace_panel.draw(tracing, look, area), None)
         draw("the notices", lambda: draw_notices(bench.notices, look, area), None)
         draw("what was dropped", lambda: draw_drops(self.drops, look), None)
         draw("the key map", lambda: draw_keymap(bench.interface, look), None)

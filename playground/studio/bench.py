@@ -23,6 +23,7 @@ from playground.studio.problems.problems import Problems
 from playground.studio.remote.controllers import Controllers
 from playground.studio.save.sketch_file import SketchFile
 from playground.studio.session import Session
+from playground.studio.trace.tracing import TraceSandbox, Tracing
 
 if TYPE_CHECKING:
     from playground.studio.theme import Theme
@@ -41,6 +42,7 @@ class Workbench:
         opener: Opener | None = None,
         size: InterfaceSize | None = None,
         wake: Callable[[], None] | None = None,
+        trace_sandbox: TraceSandbox | None = None,
     ) -> None:
         folder = folder or Path.cwd()  # where pictures, masks and copies go
         self.session = session
@@ -48,6 +50,7 @@ class Workbench:
         self.notices = Notices(now)
         self.problems = Problems()
         self.inspection = Inspection(session)
+        self.tracing = Tracing(session, trace_sandbox)
         self.painting = Painting(session, folder, wake=wake)
         self.file = SketchFile(session, self.notices)
         self.undo = Undo(session, self.notices, self.painting, self.file)

@@ -77,6 +77,8 @@ def _open(bench: Workbench) -> Iterator[Layer]:
         yield from addition.popups()
     for editing in reversed(bench.files.editing):
         yield f"editor {editing.text.path.name}", partial(ask_to_close, editing, bench.files)
+    if bench.tracing.on:
+        yield "trace", bench.tracing.toggle
     if inspection.graph.on:
         yield "graph", inspection.graph.toggle
     if inspection.inspector.on:
@@ -103,6 +105,7 @@ def _close_popup(bench: Workbench) -> None:
 
 _K = imgui.Key
 _INSPECT = "every pass's number at a pixel; Shift: of those inside, too"
+_TRACE = "every value of a texel beside the code; a click pins it, Shift: compares"
 _TOOLS = f"the brush's tool: {', '.join(TOOLS)}"
 _HELP = "show or hide these keys"
 _VISITS = "the sketch that was open before, and forward again"
@@ -130,6 +133,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.r, "R", "reset the view", lambda b: b.session.drafts.set_camera(None), brief="view"),
     Key(_K.m, "M", "map from above", lambda b: b.session.toggle_map(), brief="map"),
     Key(_K.i, "I", _INSPECT, lambda b: b.inspection.inspector.toggle()),
+    Key(_K.t, "T", _TRACE, lambda b: b.tracing.toggle()),
     Key(_K.a, "A", "keep this as A and compare; or no longer", lambda b: b.inspection.compare.toggle()),
     Key(_K.g, "G", "the passes as a graph, or no longer", lambda b: b.inspection.graph.toggle()),
     Key(_K.b, "B", "take the brush, or put it down", lambda b: b.painting.toggle()),

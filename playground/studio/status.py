@@ -70,6 +70,7 @@ class Status:
             "edited": dict(session.shown.edits.values) if session.shown else {},
             "trying": checking[0] if checking[1] >= PATIENCE else "",
             "layers": open_layers(bench),
+            "trace": bench.tracing.status(),
         }
         for addition in bench.additions:
             now |= addition.status()

@@ -572,7 +572,9 @@ def test_the_words_lead_to_the_texture_and_back(
     def both() -> None:
         draw()
         watch.update(bare.session, held=False)
-        finite.draw_not_finite(watch, bare.session, bare.theme, (400.0, 0.0, 880.0, 720.0))
+        finite.draw_not_finite(
+            watch, bare.session, bare.bench.tracing, bare.theme, (400.0, 0.0, 880.0, 720.0)
+        )
 
     monkeypatch.setattr(bare, "draw", both)
     bare.run_frames(120)

@@ -206,6 +206,9 @@ def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
         imgui.same_line()
         if button("Graph", "The passes as a graph, or no longer (G)"):
             bench.inspection.graph.toggle()
+        imgui.same_line()
+        if button("Trace", "Every value of the texel under the mouse beside the code, or no longer (T)"):
+            bench.tracing.toggle()
 
 
 def draw_search(memory: PanelState, ahead: TypedAhead) -> None:

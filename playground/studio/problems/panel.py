@@ -22,6 +22,7 @@ from playground.studio.problems.non_finite import FiniteWatch, summary
 from playground.studio.problems.problems import Problems, passes_of
 from playground.studio.session import Session
 from playground.studio.theme import Theme
+from playground.studio.trace.tracing import Tracing
 
 _BEFORE = 0.6  # fraction of the room that may lie before the column
 
@@ -285,7 +286,7 @@ def place_in(first: NotFinite, area: Area) -> tuple[float, float]:
     return x + east, y + high - north
 
 
-def draw_not_finite(watch: FiniteWatch, session: Session, look: Theme, area: Area) -> None:
+def draw_not_finite(watch: FiniteWatch, session: Session, tracing: Tracing, look: Theme, area: Area) -> None:
     """Draw the message in the picture's upper left corner; a click goes to the texture and back."""
     if not watch.non_finite:
         return
@@ -309,6 +310,10 @@ def draw_not_finite(watch: FiniteWatch, session: Session, look: Theme, area: Are
         if shows:
             if button("Back to the picture", small=True):
                 session.show(None)
+            imgui.same_line()
         elif session.can_show(ref):
             if button("Show it", "That texture from above, those texels in magenta", small=True):
                 session.show(ref)
+            imgui.same_line()
+        if button("Trace it", "The line that first gives such a number", small=True):
+            tracing.trace_not_finite(first)

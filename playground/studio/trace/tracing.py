@@ -1,0 +1,487 @@
+"""Trace the texel under the mouse, or one that is pinned, whenever the picture or the choice changes.
+
+A traced text is compiled in a sandbox of its own first, where there is one: so the window does not wait, and
+the driver's cache has the program when it is traced here. Nothing is traced while a preview is shown, while a
+save is checked, or sooner after a long trace than ``_REST`` times what that took.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import TYPE_CHECKING, Protocol
+
+from playground.engine.non_finite import NotFinite
+from playground.engine.plan import Plan, Step
+from playground.engine.sandbox import SandboxReport, TrySketch, TryTrace
+from playground.engine.trace.model import Event, Trace
+from playground.engine.trace.probe import Probe, ProbeMap, map_of
+from playground.errors import PlaygroundError
+from playground.sketch.model import ComputeVariant, CpuSource, Draw, PlainFragment, TexelKernel
+from playground.studio.inspect.inspector import Inspector, Pixel
+from playground.studio.reload.stages import refusal
+from playground.studio.session import Session
+from playground.studio.trace.rows import Selection, TraceView
+
+if TYPE_CHECKING:
+    import moderngl
+
+_REST = 3.0  # times what a trace took, before the next one
+_PATIENCE = 0.1  # [s] between questions to the sandbox, whose answer wakes the window
+
+
+class TraceSandbox(Protocol):
+    """What compiles traced texts in a process of its own: an ``engine.sandbox.Sandbox``, or a test's fake."""
+
+    def submit(self, request: TrySketch | TryTrace) -> object:
+        """Submit a request; it replaces the one before."""
+
+    def poll(self) -> SandboxReport | None:
+        """Return the answer to the newest request, once."""
+
+
+class Beside(Enum):
+    """What a trace is compared with."""
+
+    NOTHING = "nothing"
+    KEPT = "kept"
+    SAVE = "last save"
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A texel of a pass."""
+
+    path: str  # "light.visibility"
+    texel: tuple[int, int]  # column and row, from the south-west
+
+    def __str__(self) -> str:
+        return f"{self.path} at {self.texel[0]}, {self.texel[1]}"
+
+
+@dataclass
+class Tracing:
+    """The traces of one session."""
+
+    session: Session
+    sandbox: TraceSandbox | None = None
+    now: Callable[[], float] = time.perf_counter
+    on: bool = False
+    pin: tuple[float, float] | None = None  # a place in fractions of the picture; None: the mouse
+    pass_name: str = ""  # that is traced; "": what the picture shows
+    function: str | None = None  # None: the pass's own; "all", or a name
+    iteration: int | None = None  # of a repeated pass, from 0; None: the last
+    beside: Beside = Beside.NOTHING
+    kept: Trace | None = None
+    view: TraceView | None = None
+    spots: tuple[Spot, ...] = ()  # under the mouse or the pin, what the picture shows first
+    message: str = ""  # why there is no trace of what is chosen
+    compiling: str = ""  # what the sandbox compiles
+    seconds: float = 0.0  # that the last trace took
+    selection: Selection = field(default_factory=Selection)
+    file: str = ""  # that is shown
+    line: int = 0  # the caret's, from 1; 0: none
+    scrolls: bool = False  # the caret's line is to be scrolled to
+    expression: str = ""  # of the probe
+    probe_message: str = ""
+    plain: set[str] = field(default_factory=set)  # passes that are traced in their plain form
+    traces: int = 0  # made so far
+    inspector: Inspector = field(init=False)
+    _fixed: Spot | None = None  # a texel that was chosen by number
+    _seek: bool = False  # the next trace is to show its first event that is not finite
+    _before: Trace | None = None  # before the last save
+    _pixel: Pixel | None = None
+    _spots_of: object = None
+    _traced: object = None  # what the view is of
+    _ready: set[object] = field(default_factory=set)  # programs that a sandbox has compiled, or need none
+    _refused: dict[object, str] = field(default_factory=dict)  # programs that the sandbox could not run
+    _tried: object = None  # what the sandbox compiles
+    _coming: ProbeMap | None = None  # shown once the sandbox has compiled it
+    _find: ProbeMap | None = None  # whose first texel is looked for in the next picture
+    _free_at: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.inspector = Inspector(self.session, inner=True)
+
+    def release(self) -> None:
+        """Release what was made in the engine's context."""
+        self.inspector.release()
+
+    # ── choosing ─────────────────────────────────────────────────────────────
+
+    def toggle(self) -> None:
+        """Switch tracing on or off; off leaves nothing but the choice."""
+        self.on = not self.on
+        if not self.on:
+            self.view, self._traced, self._spots_of, self.spots = None, None, None, ()
+            self.message = self.compiling = ""
+            if isinstance(self.session.view.map, ProbeMap):
+                self.session.show(None)
+
+    def point(self, pixel: Pixel) -> None:
+        """Trace what is under a pixel of the picture, unless a place is pinned."""
+        if not self.is_pinned:
+            self._pixel = pixel
+
+    def pin_at(self, pixel: Pixel, size: tuple[int, int]) -> None:
+        """Pin a pixel of the picture, of a size."""
+        self.pin = (pixel[0] + 0.5) / size[0], (pixel[1] + 0.5) / size[1]
+        self._fixed = None
+
+    def follow(self) -> None:
+        """Follow the mouse again."""
+        self.pin = self._fixed = None
+
+    def keep(self) -> None:
+        """Keep the trace that is shown, to compare others with it."""
+        if self.view is not None:
+            self.kept, self.beside = self.view.trace, Beside.KEPT
+            self._show(self.view.trace)
+
+    def compare(self, beside: Beside) -> None:
+        """Show the values of another trace beside those of this one."""
+        self.beside = beside
+        if self.view is not None:
+            self._show(self.view.trace)
+
+    def record(self, function: str | None) -> None:
+        """Trace other functions: the pass's own, "all", or one."""
+        self.function = function
+
+    def trace_not_finite(self, first: NotFinite) -> None:
+        """Trace a texel that is not finite, and go to where its run first is not."""
+        plan = self.session.plan
+        path = _public_path(plan, first.path) if plan is not None else first.path
+        self.on, self._seek = True, True
+        self.pin, self.pass_name, self._fixed = None, path, Spot(path, first.texel)
+
+    def go_to_not_finite(self) -> None:
+        """Show the first event that is not finite."""
+        event = self.view.trace.first_not_finite() if self.view is not None else None
+        if event is not None:
+            self.go_to(event)
+        elif self.on:
+            others = "; record all functions" if self.function != "all" else ""
+            self.message = f"no recorded value is NaN or infinite{others}"
+
+    def go_to_difference(self) -> None:
+        """Show the first event that differs from the other trace."""
+        if self.view is not None and self.view.difference is not None:
+            here, there = self.view.difference
+            if here is not None:
+                self.go_to(here)
+            elif there is not None:
+                self.file, self.line, self.scrolls = there.path, there.line, True
+
+    def go_to(self, event: Event) -> None:
+        """Show an event's line, in its call and its iterations."""
+        if self.view is not None:
+            self.view.go_to(event)
+            self.file, self.line, self.scrolls = event.path, event.line, True
+
+    def other(self) -> Trace | None:
+        """Return the trace that the one shown is compared with."""
+        return {Beside.KEPT: self.kept, Beside.SAVE: self._before}.get(self.beside)
+
+    @property
+    def spot(self) -> Spot | None:
+        """The texel that is traced, or is to be."""
+        if self._fixed is not None:
+            return self._fixed
+        named = [spot for spot in self.spots if spot.path == self.pass_name]
+        return next(iter(named or self.spots), None)
+
+    def choose_pass(self, name: str) -> None:
+        """Trace another pass, at its texel of the same place."""
+        self.pass_name, self._fixed, self.iteration, self.file = name, None, None, ""
+
+    def open(self, file: str) -> None:
+        """Show a file, at the first call in it."""
+        lines = [call.line for call in self.view.trace.calls if call.path == file] if self.view else []
+        self.file, self.line, self.scrolls = file, min(lines, default=1), True
+
+    @property
+    def can_be_plain(self) -> bool:
+        """Whether the chosen pass runs as a compute shader, and has a plain form that can be traced."""
+        step = self._step(self.spot) if self.spot is not None else None
+        chosen = self.spot is not None and self.spot.path not in self.plain
+        return chosen and step is not None and isinstance(step.kernel, ComputeVariant)
+
+    def trace_plain(self) -> None:
+        """Trace the plain form of the chosen pass, which runs for it first."""
+        if self.spot is not None:
+            self.plain.add(self.spot.path)
+
+    def pin_here(self) -> None:
+        """Pin the texel that is traced."""
+        self._fixed = self.spot
+
+    @property
+    def is_pinned(self) -> bool:
+        """Whether the mouse changes nothing."""
+        return self.pin is not None or self._fixed is not None
+
+    @property
+    def repeats(self) -> int:
+        """How many steps the traced pass takes; 1 for one that does not repeat."""
+        step = self._step(self.spot) if self.spot is not None else None
+        return step.repeat if step is not None else 1
+
+    # ── a frame ──────────────────────────────────────────────────────────────
+
+    def status(self) -> dict[str, object]:
+        """Return what is traced, as JSON has it; nothing while tracing is off."""
+        if not self.on:
+            return {}
+        trace = self.view.trace if self.view is not None else None
+        parts = self.view.difference if self.view is not None else None
+        return {
+            "spot": str(self.spot or ""),
+            "texel": list(trace.texel) if trace is not None else [],
+            "events": len(trace.events) if trace is not None else 0,
+            "exact": trace is not None and trace.is_exact,
+            "traces": self.traces,
+            "line": self.line,
+            "compiling": self.compiling,
+            "message": self.message,
+            "probe": self.probe_message,
+            "parts": [None if event is None else event.line for event in parts or ()],
+        }
+
+    @property
+    def patience(self) -> float:
+        """How long nothing needs to be done [s]."""
+        if not self.on:
+            return math.inf
+        if self.compiling:
+            return _PATIENCE
+        if self._traced != self._wanted() and self._can_trace:
+            return max(self._free_at - self.now(), 0.0)
+        return math.inf
+
+    def update(self, picture: moderngl.Texture | None) -> None:
+        """Trace, if anything has changed and it is time to; ``picture`` is what the session returned last."""
+        if not self.on or picture is None:
+            return
+        self._take_report()
+        if not self._can_trace:
+            return
+        self._find_spots(picture)
+        if self._find is not None and self._find == self.session.view.map:
+            self._find_first()
+        wanted, spot = self._wanted(), self.spot
+        if wanted == self._traced or self.now() < self._free_at or spot is None:
+            return
+        try:
+            self._trace(spot, wanted)
+        except PlaygroundError as error:
+            self._fail(str(error), wanted)
+
+    def _trace(self, spot: Spot, wanted: object) -> None:
+        """Trace a texel, or have the sandbox compile the text first; raise what is wrong with either."""
+        plan = self._plan_of(spot)
+        step = _step_of(plan, spot.path)
+        if step is None:
+            self._fail(f"the picture was made without '{spot.path}'", wanted)
+        elif not is_traceable(step):
+            self._fail(f"'{spot.path}' {why_not(step)}", wanted)
+        else:
+            program = step.kernel.source.canonical, self.function
+            if self.sandbox is None or program in self._ready:
+                self._run(plan, spot, wanted)
+            elif program in self._refused:
+                self._fail(self._refused[program], wanted)
+            else:
+                self._compile(plan, spot, program)
+
+    def _plan_of(self, spot: Spot) -> Plan:
+        """Return the plan whose pass is traced: the picture's, but for plain forms and a probe's."""
+        session, tracer = self.session, self.session.engine.tracer
+        last = session.engine.record.plan
+        assert last is not None and session.sketch is not None
+        probes = isinstance(session.view.map, ProbeMap)
+        if not probes and spot.path not in self.plain:
+            return last
+        sketch = session.sketch if probes else last.sketch
+        return tracer.plan(sketch, spot.path, last.frame_size, last.time, last.steps)
+
+    @property
+    def _can_trace(self) -> bool:
+        session = self.session
+        waits = session.is_preview or session.awaits_data or session.catch_up.behind is not None
+        return session.plan is not None and session.engine.record.plan is not None and not waits
+
+    def _wanted(self) -> object:
+        session = self.session
+        choice = self.spot, self.function, self.iteration, frozenset(self.plain)
+        return *choice, session.draws, id(session.engine)
+
+    def _step(self, spot: Spot) -> Step | None:
+        plan = self.session.engine.record.plan
+        return _step_of(plan, spot.path) if plan is not None else None
+
+    def _find_spots(self, picture: moderngl.Texture) -> None:
+        """Find the texel of each pass that is under the mouse, or under the pin."""
+        session, plan = self.session, self.session.plan
+        pixel = self._pixel
+        if self.pin is not None:
+            pixel = int(self.pin[0] * picture.size[0]), int(self.pin[1] * picture.size[1])
+        key = pixel, session.draws, id(session.engine)
+        if pixel is None or plan is None or key == self._spots_of:
+            return
+        self._spots_of = key
+        report = self.inspector.at(pixel, picture)
+        spots: dict[str, Spot] = {}
+        if session.view.map is None:
+            spots["view"] = Spot("view", pixel)
+        for sample in (report.shown, *report.samples) if report is not None else ():
+            if sample is not None:
+                path = sample.name.partition(":")[0]
+                spots.setdefault(path, Spot(path, sample.texel))
+        for path in plan.flat.outputs:  # as large as the picture: of other tools' shaders, passes of the view
+            step = _step_of(plan, path)
+            if session.view.map is None and step is not None and step.size == picture.size:
+                spots.setdefault(path, Spot(path, pixel))
+        able = [spot for spot in spots.values() if is_traceable(_step_of(plan, spot.path))]
+        self.spots = (*able, *(spot for spot in spots.values() if spot not in able))
+
+    def _compile(self, plan: Plan, spot: Spot, program: object) -> None:
+        """Have the sandbox compile the text of a spot's pass, unless it does already."""
+        assert self.sandbox is not None
+        if program != self._tried and self._coming is None:
+            self._tried, self.compiling, self.message = program, spot.path, ""
+            self.sandbox.submit(TryTrace(plan.sketch, spot.path, self.function, time=plan.time))
+
+    def _take_report(self) -> None:
+        report = self.sandbox.poll() if self.sandbox is not None and self.compiling else None
+        if report is None:
+            return
+        coming, self._coming = self._coming, None
+        tried, self._tried, self.compiling = self._tried, None, ""
+        if coming is not None:
+            self._take_probe(coming, report)
+        elif tried is not None:
+            refused = refusal(report)
+            if refused is None:
+                self._ready.add(tried)
+            else:
+                self._refused[tried] = str(refused)
+
+    def _fail(self, message: str, wanted: object) -> None:
+        self.message, self._traced, self._seek = message, wanted, False
+
+    def _run(self, plan: Plan, spot: Spot, wanted: object) -> None:
+        start = self.now()
+        try:
+            tracer = self.session.engine.tracer
+            trace = tracer.trace(plan, spot.path, spot.texel, self.iteration, self.function)
+        finally:
+            self.seconds = self.now() - start
+            self._free_at = self.now() + _REST * self.seconds
+        self.traces += 1
+        self.message, self._traced = "", wanted
+        before = self.view.trace if self.view is not None else None
+        if before is not None and before.step == trace.step and before.files != trace.files:
+            self._before = before
+        self._show(trace)
+        if self._seek:
+            self._seek = False
+            self.go_to_not_finite()
+
+    def _show(self, trace: Trace) -> None:
+        self.view = TraceView(trace, self.selection, self.other())
+        if self.file not in trace.files:
+            self.file = next(iter(self.view.paths), "")
+            head = next((call.line for call in trace.calls if call.path == self.file), 0)
+            self.line, self.scrolls = head, bool(head)
+
+    # ── probes ───────────────────────────────────────────────────────────────
+
+    def show_probe(self, *, find: bool = False) -> None:
+        """Show the expression at the caret's line as a map; or ``find`` the first texel where it is not 0."""
+        sketch, spot = self.session.sketch, self.spot
+        if sketch is None or spot is None:
+            return
+        path = self._own_path(spot.path)
+        try:
+            probe_map = map_of(sketch, Probe(path, self.file, self.line, self.expression.strip()))
+        except PlaygroundError as error:
+            self.probe_message = str(error)
+            return
+        self.probe_message = ""
+        self._find = probe_map if find else None
+        if self.sandbox is None:
+            self._take_probe(probe_map, SandboxReport(True))
+            return
+        self._coming, self._tried, self.compiling = probe_map, None, f"'{self.expression.strip()}'"
+        self.sandbox.submit(TrySketch(probe_map.of(sketch), time=self.session.clock.time))
+
+    def _own_path(self, path: str) -> str:
+        shown_map = self.session.view.map
+        return path if shown_map is None else shown_map.own_path(path)
+
+    def _take_probe(self, probe_map: ProbeMap, report: SandboxReport) -> None:
+        refused = refusal(report)
+        if refused is not None:
+            self.probe_message, self._find = str(refused), None
+            return
+        self.session.view.show(probe_map)
+        self.session.fit_map()
+        if self._find is not None:
+            self._find = self.session.view.map if isinstance(self.session.view.map, ProbeMap) else None
+
+    def _find_first(self) -> None:
+        """Pin the first texel, row by row from the south, at which the probe is not 0."""
+        probe_map, self._find = self._find, None
+        assert probe_map is not None
+        found = first_hit(self.session, probe_map)
+        if found is None:
+            self.probe_message = f"{probe_map.probe} is 0 or false in every texel"
+            return
+        texel, count, runs = found
+        path = probe_map.probe.path
+        self.pin, self._fixed = None, Spot(path, texel)
+        more = f"; {count:,} texels in all" if count > 1 else "; in no other"
+        self.probe_message = f"first at texel {texel[0]}, {texel[1]}, in run {runs}{more}"
+
+
+def first_hit(session: Session, probe_map: ProbeMap) -> tuple[tuple[int, int], int, int] | None:
+    """Return the first texel where a probe is not 0, how many there are, in which run; None for none."""
+    hits = session.read_values(probe_map.hits_ref)
+    if hits is None or not hits[..., 1].any():
+        return None
+    rows, columns = hits[..., 1].nonzero()
+    texel = int(columns[0]), int(rows[0])
+    return texel, len(rows), int(hits[texel[1], texel[0], 1])
+
+
+def _step_of(plan: Plan, path: str) -> Step | None:
+    """Return the step that gives the first output of a pass at any level."""
+    outputs = plan.flat.outputs.get(path, {})
+    ref = outputs.get(path.rpartition(".")[2]) or next(iter(outputs.values()), None)
+    return plan.step(ref.path) if ref is not None else None
+
+
+def _public_path(plan: Plan, leaf: str) -> str:
+    """Return the path by which a sketch names a leaf, that of a fast variant's last pass too."""
+    flat = plan.flat.outputs
+    names = (path for path, outputs in flat.items() if any(ref.path == leaf for ref in outputs.values()))
+    return leaf if leaf in flat else next(names, leaf)
+
+
+def is_traceable(step: Step | None) -> bool:
+    """Return whether a step has a fragment shader."""
+    return step is not None and isinstance(step.kernel, TexelKernel | PlainFragment | Draw)
+
+
+def why_not(step: Step) -> str:
+    """Return why a step has no trace."""
+    match step.kernel:
+        case ComputeVariant():
+            return "runs as a compute shader, its fast variant; its plain form can be traced"
+        case CpuSource():
+            return "is made by the processor, so it has no lines to trace; choose another pass"
+    return "is a compute shader, which is not traced; choose another pass"

@@ -1,0 +1,309 @@
+"""Tracing in a session: which texel, when, what is beside it, probes; the picture stays as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from imgui_bundle import imgui
+
+from playground.engine.non_finite import NotFinite
+from playground.engine.sandbox import SandboxReport, TrySketch, TryTrace
+from playground.engine.trace.probe import ProbeMap
+from playground.errors import SandboxTimeout
+from playground.studio.inspect.inspector import texel_of_map
+from playground.studio.keys import close_one, open_layers
+from playground.studio.trace.panel import TracePanel, state_of, title_of
+from playground.studio.trace.tracing import Beside, Spot, Tracing
+
+from ..sketch_texts import map_of_height
+from .panel_desk import Bare
+from .session_desk import OpenSession
+
+TERRAIN = """// terrain.glsl -- steps, and a hole
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(0, 1) How high
+float steps(float x) {
+    float sum = 0.0;
+    for (int i = 0; i < 4; i++)
+        sum += x / float(i + 1);
+    return sum;
+}
+float kernel(ivec2 texel) {
+    float x = float(texel.x) - 2.0;
+    float root = sqrt(x);
+    return level * (texel.y > 3 ? root : steps(x));
+}
+"""
+ADD, ROOT, RETURN = 7, 12, 13
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": "format = 1\nsize = [9, 6]\n" + map_of_height()}
+SIZE = 90, 60
+HARMONIC = 1 + 1 / 2 + 1 / 3 + 1 / 4
+
+Begin = Callable[..., Tracing]
+
+
+class Compiler:
+    """A sandbox that answers when a test says so."""
+
+    def __init__(self) -> None:
+        self.requests: list[TrySketch | TryTrace] = []
+        self.answer: SandboxReport | None = None
+
+    def submit(self, request: TrySketch | TryTrace) -> None:
+        self.requests.append(request)
+
+    def poll(self) -> SandboxReport | None:
+        answer, self.answer = self.answer, None
+        return answer
+
+
+@pytest.fixture
+def begin(folder: Path, open_session: OpenSession) -> Begin:
+    """Give what begins to trace a session on the folder's sketch, shown as a map."""
+
+    def begin(**options: object) -> Tracing:
+        session = open_session(folder)
+        session.frame(SIZE)
+        session.show("height:height")
+        tracing = Tracing(session, now=iter(range(10**6)).__next__, **options)  # type: ignore[arg-type]
+        tracing.toggle()
+        return tracing
+
+    return begin
+
+
+def frame(tracing: Tracing, count: int = 1) -> None:
+    for _ in range(count):
+        tracing.session.frame(SIZE)
+        tracing.session.picture.rest = 0.0
+        tracing.update(tracing.session.picture.texture)
+
+
+def pixel_of(texel: tuple[int, int]) -> tuple[int, int]:
+    """Return a pixel at which the map shows a texel."""
+    pixels = ((x, y) for y in range(SIZE[1]) for x in range(SIZE[0]))
+    return next(pixel for pixel in pixels if texel_of_map(pixel, SIZE, (9, 6)) == texel)
+
+
+def trace_at(tracing: Tracing, texel: tuple[int, int]) -> None:
+    tracing.point(pixel_of(texel))
+    frame(tracing, 3)
+    assert tracing.view is not None and tracing.view.trace.texel == texel
+
+
+def value(tracing: Tracing, line: int, name: str) -> str:
+    assert tracing.view is not None
+    (item,) = [item for item in tracing.view.rows(tracing.file)[line - 1].items if item.name == name]
+    return item.text
+
+
+def test_the_texel_under_the_mouse_is_traced(begin: Begin) -> None:
+    tracing = begin()
+    trace_at(tracing, (5, 1))
+    assert tracing.spot == Spot("height", (5, 1)) and Path(tracing.file).name == "terrain.glsl"
+    assert float(value(tracing, ADD, "sum")) == pytest.approx(3 * HARMONIC, rel=1e-3)
+    assert tracing.view is not None and tracing.view.trace.is_exact
+    trace_at(tracing, (4, 0))
+    assert float(value(tracing, RETURN, "→")) == pytest.approx(0.5 * 2 * HARMONIC, rel=1e-3)
+
+
+def test_nothing_is_traced_again_while_nothing_changes(begin: Begin) -> None:
+    tracing = begin()
+    trace_at(tracing, (5, 1))
+    before = tracing.traces
+    frame(tracing, 5)
+    assert tracing.traces == before and tracing.patience > 1e9
+
+
+def test_a_pinned_texel_stays_until_the_mouse_is_followed(begin: Begin) -> None:
+    tracing = begin()
+    tracing.pin_at(pixel_of((5, 1)), SIZE)
+    tracing.point(pixel_of((0, 0)))
+    frame(tracing, 3)
+    assert tracing.spot == Spot("height", (5, 1)) and tracing.is_pinned
+    tracing.follow()
+    trace_at(tracing, (0, 0))
+
+
+def test_values_follow_a_save_and_stand_beside_those_before(begin: Begin, folder: Path) -> None:
+    tracing = begin()
+    tracing.pin_at(pixel_of((5, 1)), SIZE)
+    frame(tracing, 3)
+    tracing.compare(Beside.SAVE)
+    (folder / "terrain.glsl").write_text(TERRAIN.replace("float(i + 1)", "float(i + 2)"), encoding="utf-8")
+    tracing.session.drafts.reload()
+    frame(tracing, 4)
+    assert float(value(tracing, ADD, "sum")) == pytest.approx(3 * (HARMONIC - 1 + 1 / 5), rel=1e-3)
+    tracing.go_to_difference()
+    assert tracing.view is not None and tracing.line == ADD
+    (item,) = [i for i in tracing.view.rows(tracing.file)[ADD - 1].items if i.parts]
+    assert (item.text, item.other) == ("1.5", "3"), "the first of the four sums"
+
+
+def test_a_kept_trace_stands_beside_that_of_another_texel(begin: Begin) -> None:
+    tracing = begin()
+    trace_at(tracing, (5, 1))
+    tracing.keep()
+    trace_at(tracing, (6, 1))
+    assert tracing.view is not None
+    row = tracing.view.rows(tracing.file)[ADD - 1]
+    assert [item.other for item in row.items] == [f"{3 * HARMONIC:.4g}"]
+    assert "kept" in state_of(tracing)[0]
+
+
+def test_values_follow_a_parameter(begin: Begin) -> None:
+    tracing = begin()
+    trace_at(tracing, (3, 1))
+    tracing.session.drafts.set("height.level", 1.0)
+    frame(tracing, 3)
+    assert float(value(tracing, RETURN, "→")) == pytest.approx(HARMONIC, rel=1e-3)
+
+
+def test_a_number_that_is_not_finite_is_gone_to(begin: Begin) -> None:
+    tracing = begin()
+    tracing.toggle()
+    tracing.trace_not_finite(NotFinite("height", "height", (1, 4), "NaN", 4, (9, 6)))
+    tracing.point((0, 0))
+    frame(tracing, 3)
+    assert tracing.on and tracing.line == ROOT and value(tracing, ROOT, "root") == "NaN"
+    trace_at_finite = Spot("height", (5, 1))
+    tracing.follow()
+    tracing.point(pixel_of(trace_at_finite.texel))
+    frame(tracing, 3)
+    tracing.go_to_not_finite()
+    assert "NaN" in tracing.message
+
+
+def test_nothing_is_traced_before_the_sandbox_has_compiled_it(begin: Begin) -> None:
+    compiler = Compiler()
+    tracing = begin(sandbox=compiler)
+    tracing.pin_at(pixel_of((5, 1)), SIZE)
+    frame(tracing, 4)
+    (request,) = compiler.requests
+    assert isinstance(request, TryTrace) and request.path == "height"
+    assert tracing.view is None and tracing.compiling == "height" and tracing.patience < 1
+    compiler.answer = SandboxReport(True)
+    frame(tracing, 2)
+    assert tracing.view is not None and not tracing.compiling
+    trace = tracing.traces
+    tracing.pin_at(pixel_of((6, 1)), SIZE)
+    frame(tracing, 4)
+    assert tracing.traces > trace and len(compiler.requests) == 1, "another texel needs no compiler"
+
+
+def test_what_the_sandbox_could_not_run_is_never_run_here(begin: Begin) -> None:
+    compiler = Compiler()
+    tracing = begin(sandbox=compiler)
+    tracing.pin_at(pixel_of((5, 1)), SIZE)
+    frame(tracing, 2)
+    compiler.answer = SandboxReport(False, SandboxTimeout("pass 'height' took longer than 10 s"))
+    for texel in (5, 1), (6, 1), (7, 1):
+        tracing.pin_at(pixel_of(texel), SIZE)
+        frame(tracing, 3)
+        assert tracing.view is None and "10 s" in tracing.message
+    tracing.record("kernel")
+    frame(tracing, 2)
+    assert tracing.compiling, "another text may do"
+
+
+def test_a_trace_changes_neither_picture_nor_counters(begin: Begin) -> None:
+    tracing = begin()
+    session = tracing.session
+    tracing.toggle()
+    frame(tracing, 3)
+    engine = session.engine
+
+    def state() -> tuple[object, ...]:
+        picture = session.read()
+        assert picture is not None
+        record = engine.record
+        return picture.array.tobytes(), dict(engine.runs), session.draws, record.ran, record.texels
+
+    before = state()
+    tracing.toggle()
+    for texel in (5, 1), (1, 4), (7, 3):
+        trace_at(tracing, texel)
+    assert state() == before and tracing.traces >= 3
+
+
+def test_a_probe_is_shown_as_a_map_with_its_own_range(begin: Begin) -> None:
+    tracing = begin()
+    trace_at(tracing, (5, 1))
+    tracing.line, tracing.expression = ADD, "sum"
+    tracing.show_probe()
+    frame(tracing, 3)
+    shown = tracing.session.view.map
+    assert isinstance(shown, ProbeMap) and not tracing.session.error
+    assert shown.value("lowest") == pytest.approx(-2 * HARMONIC)  # x = -2 in the first column
+    assert shown.value("highest") == pytest.approx(6 * HARMONIC)
+    assert shown.ref not in tracing.session.refs
+    trace_at(tracing, (6, 1))
+    assert tracing.view is not None and len(tracing.view.trace.calls_of("k_see")) == 0
+    tracing.toggle()
+    assert tracing.session.view.map is None
+
+
+def test_the_first_texel_where_a_condition_holds_is_traced(begin: Begin) -> None:
+    tracing = begin()
+    trace_at(tracing, (0, 0))
+    tracing.line, tracing.expression = ADD, "sum > 3.9"  # x = 2: its sums are 2, 3, 3.67, 4.17
+    tracing.show_probe(find=True)
+    frame(tracing, 5)
+    assert tracing.spot == Spot("height", (4, 0)) and tracing.is_pinned
+    assert "run 4" in tracing.probe_message and "20 texels" in tracing.probe_message  # 5 columns, 4 rows
+    tracing.expression = "sum > 100.0"
+    tracing.show_probe(find=True)
+    frame(tracing, 5)
+    assert "every texel" in tracing.probe_message and tracing.spot == Spot("height", (4, 0))
+
+
+@pytest.mark.parametrize(
+    ("line", "expression", "named"), [(9, "x", "line"), (ADD, "sum = 1.0", "only reads")]
+)
+def test_what_is_no_probe_says_why(begin: Begin, line: int, expression: str, named: str) -> None:
+    tracing = begin()
+    trace_at(tracing, (0, 0))
+    tracing.line, tracing.expression = line, expression
+    tracing.show_probe()
+    assert named in tracing.probe_message and not isinstance(tracing.session.view.map, ProbeMap)
+
+
+def test_a_probe_that_does_not_compile_leaves_the_picture(begin: Begin) -> None:
+    compiler = Compiler()
+    tracing = begin(sandbox=compiler)
+    tracing.pin_at(pixel_of((5, 1)), SIZE)
+    frame(tracing, 2)
+    compiler.answer = SandboxReport(True)
+    frame(tracing, 2)
+    tracing.line, tracing.expression = ADD, "summ"
+    tracing.show_probe()
+    assert isinstance(compiler.requests[-1], TrySketch)
+    compiler.answer = SandboxReport(False, SandboxTimeout("'summ' undeclared"))
+    frame(tracing, 2)
+    assert "summ" in tracing.probe_message and not isinstance(tracing.session.view.map, ProbeMap)
+
+
+def test_the_window_of_a_trace_draws_and_esc_closes_it(bare: Bare) -> None:
+    bench, panel = bare.bench, TracePanel()
+    draw = bare.draw
+    bench.session.show("height:height")
+
+    def with_trace() -> None:
+        draw()
+        bench.tracing.update(bare.picture)
+        panel.draw(bench.tracing, bare.theme, (330.0, 0.0, 950.0, 720.0))
+
+    bare.draw = with_trace
+    bare.key(imgui.Key.t)
+    assert bench.tracing.on and "move the mouse" in title_of(bench.tracing)
+    bench.tracing.pin = 0.5, 0.3
+    bare.run_frames(4)
+    assert bench.tracing.view is not None and "bit for bit" in state_of(bench.tracing)[0]
+    assert {"Keep", "##iteration", "##probe"} <= set(bare.places)
+    bare.click("Keep")
+    assert bench.tracing.beside is Beside.KEPT
+    assert open_layers(bench) == ["trace"]
+    close_one(bench)
+    assert not bench.tracing.on
