@@ -75,7 +75,21 @@ class TryTexts:
     file: str = ""  # absolute path of its text
 
 
-Request = TrySketch | TryLibrary | TryTexts
+@dataclass(frozen=True)
+class TryTrace:
+    """Trace one texel of a pass in a small frame of a sketch.
+
+    The driver's cache then has the traced text as the pass is bound, which ``TryTexts`` does not know.
+    """
+
+    sketch: Sketch
+    path: str  # of the pass, as the frame has it
+    function: str | None = None  # as ``Engine.trace`` takes it
+    size: tuple[int, int] = (64, 36)  # pixels
+    time: float = 0.0  # [s]
+
+
+Request = TrySketch | TryLibrary | TryTexts | TryTrace
 
 
 @dataclass(frozen=True)
@@ -104,7 +118,7 @@ class Activity:
 
 def reading_seconds(request: Request) -> float:
     """Return how long a request may take to read its large data files, besides all else [s]."""
-    if not isinstance(request, TrySketch):
+    if not isinstance(request, TrySketch | TryTrace):
         return 0.0
     files = traits_of(request.sketch).files
     values = values_of(request.sketch) if files else {}

@@ -14,11 +14,26 @@ from playground.engine.plan import Step
 from playground.engine.planner import smallest_terrain
 from playground.engine.process.worker import Parent, Service
 from playground.engine.programs import compile_library
-from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch, TryTexts
+from playground.engine.sandbox import (
+    Activity,
+    Request,
+    SandboxReport,
+    TryLibrary,
+    TrySketch,
+    TryTexts,
+    TryTrace,
+)
 from playground.engine.textures import drain, is_lost
 from playground.engine.trace.tracer import try_texts
 from playground.engine.unfinished import Unfinished
-from playground.errors import ContextError, Diagnostic, PlaygroundError, SandboxCrash, ShaderError
+from playground.errors import (
+    ContextError,
+    Diagnostic,
+    PlaygroundError,
+    SandboxCrash,
+    ShaderError,
+    SketchError,
+)
 from playground.shader.source import read_source
 from playground.shader.wrap import COMPUTE
 from playground.sketch.model import CpuSource, Sketch
@@ -62,6 +77,9 @@ class _Handler:
                 self._report(Activity(request.path, request.file))
                 try_texts(self._ctx, request)
                 return SandboxReport(True)
+            if isinstance(request, TryTrace):
+                self._trace(request)
+                return SandboxReport(True)
             for driver in request.drivers:
                 if driver == COMPUTE and self._ctx.version_code < 430:
                     skipped.append(COMPUTE)
@@ -89,6 +107,20 @@ class _Handler:
         except ShaderError as wrong:
             raise all_errors(wrong, engine, request.sketch, size=request.size, time=request.time) from None
 
+    def _trace(self, request: TryTrace) -> None:
+        engine = self._engine("auto")
+        engine.runner.before_step = partial(self._before_step, "")
+        small = request.sketch.with_values({"size": smallest_terrain(request.sketch)}).with_picture(samples=1)
+        drain(engine.ctx)
+        _draw_some_frames(engine, small, request)
+        assert engine.record.plan is not None
+        self._report(Activity(request.path, request.sketch.file))
+        try:
+            engine.tracer.trace(engine.record.plan, request.path, (0, 0), None, request.function)
+        except SketchError:  # by the plain form, of what has no fragment shader in the frame
+            engine.trace_frame(request.path, texel=(0, 0), function=request.function)
+        engine.ctx.finish()
+
     def _engine(self, driver: str) -> Engine:
         if driver not in self._engines:
             engine = Engine(self._ctx, driver=driver, cache_bytes=64 * 2**20, notice=silent)
@@ -108,7 +140,7 @@ class _Handler:
         self._parent.report(activity)
 
 
-def _draw_some_frames(engine: Engine, sketch: Sketch, request: TrySketch) -> None:
+def _draw_some_frames(engine: Engine, sketch: Sketch, request: TrySketch | TryTrace) -> None:
     """Draw at the time asked for, or where that takes very many frames, at an earlier one."""
     at, engine.options.patience = request.time, _PATIENCE
     try:
