@@ -265,8 +265,9 @@ GESTURES = (
 """What a mouse does."""
 
 
-_AROUND = 4
-"""Lines that the heading and the margins take; where all do not fit, the text is small."""
+_AROUND = 5
+"""Lines that the heading and the margins take; where all do not fit, the text is smaller."""
+_SIZES = theme.TEXT_SIZE, theme.SMALL, theme.SMALL - 1
 
 
 def draw_keymap(interface: Interface, look: Theme) -> None:
@@ -284,8 +285,9 @@ def draw_keymap(interface: Interface, look: Theme) -> None:
             imgui.text_unformatted("Keys")
         names = [(", ".join(names), meaning) for meaning, names in keys_by_meaning().items()]
         rows = *names, *GESTURES
-        fits = (len(rows) + _AROUND) * imgui.get_text_line_height() <= room.y
-        with look.font(look.text, theme.TEXT_SIZE if fits else theme.SMALL):
+        line = imgui.get_text_line_height() / theme.TEXT_SIZE
+        fitting = (s for s in _SIZES if (len(rows) + _AROUND) * line * s <= room.y)
+        with look.font(look.text, next(fitting, _SIZES[-1])):
             warm = theme.colour(theme.WARM)
             cells = [
                 (partial(imgui.text_colored, warm, keys), partial(imgui.text_unformatted, meaning))
