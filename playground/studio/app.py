@@ -446,7 +446,7 @@ class Live:
         draw("what is shown over the picture", lambda: draw_inspection(*view), None)
         self.guard.run("tracing", lambda: tracing.update(picture), None)
         draw("the pinned texel", lambda: draw_mark(tracing, look, area), None)
-        draw("the trace", lambda: self.trace_panel.draw(tracing, look, area), None)
+        draw("the trace", lambda: self.trace_panel.draw(tracing, look, above), None)
         draw("the notices", lambda: draw_notices(bench.notices, look, area), None)
         draw("what was dropped", lambda: draw_drops(self.drops, look), None)
         draw("the key map", lambda: draw_keymap(bench.interface, look), None)

@@ -15,6 +15,7 @@ from playground.errors import SandboxTimeout
 from playground.studio.inspect.inspector import texel_of_map
 from playground.studio.keys import close_one, open_layers
 from playground.studio.trace.panel import TracePanel, state_of, title_of
+from playground.studio.trace.rows import Row
 from playground.studio.trace.tracing import Beside, Spot, Tracing
 
 from ..sketch_texts import map_of_height
@@ -91,6 +92,11 @@ def trace_at(tracing: Tracing, texel: tuple[int, int]) -> None:
     tracing.point(pixel_of(texel))
     frame(tracing, 3)
     assert tracing.view is not None and tracing.view.trace.texel == texel
+
+
+def view_rows(tracing: Tracing) -> tuple[Row, ...]:
+    assert tracing.view is not None
+    return tracing.view.rows(tracing.file)
 
 
 def value(tracing: Tracing, line: int, name: str) -> str:
@@ -252,6 +258,8 @@ def test_the_first_texel_where_a_condition_holds_is_traced(begin: Begin) -> None
     tracing.show_probe(find=True)
     frame(tracing, 5)
     assert tracing.spot == Spot("height", (4, 0)) and tracing.is_pinned
+    (row,) = [row for row in view_rows(tracing) if row.number == ADD]
+    assert [item.event.iterations for item in row.items] == [(3,)], "in the iteration where it first held"
     assert "run 4" in tracing.probe_message and "20 texels" in tracing.probe_message  # 5 columns, 4 rows
     tracing.expression = "sum > 100.0"
     tracing.show_probe(find=True)

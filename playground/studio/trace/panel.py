@@ -309,7 +309,7 @@ class TracePanel:
     def _values(self, tracing: Tracing, view: TraceView, row: Row, grid: _Grid, look: Theme) -> None:
         narrow: dict[imgui.StyleVar_, float | ImVec2] = {
             imgui.StyleVar_.frame_padding: ImVec2(4 * look.scale, 0),
-            imgui.StyleVar_.item_spacing: ImVec2(7 * look.scale, 0),
+            imgui.StyleVar_.item_spacing: ImVec2(12 * look.scale, 0),
         }
         with styled(sizes=narrow):
             drawn = False
@@ -610,9 +610,10 @@ def act_on_picture(tracing: Tracing, picture: moderngl.Texture | None, area: Are
 
 def draw_mark(tracing: Tracing, look: Theme, area: Area) -> None:
     """Draw a cross on the picture where a place is pinned."""
-    if not tracing.on or tracing.pin is None:
+    mark = tracing.mark(area[2:]) if tracing.on else None
+    if mark is None:
         return
-    x, y = area[0] + tracing.pin[0] * area[2], area[1] + (1 - tracing.pin[1]) * area[3]
+    x, y = area[0] + mark[0] * area[2], area[1] + (1 - mark[1]) * area[3]
     draw, near, far = imgui.get_background_draw_list(), 3 * look.scale, 10 * look.scale
     for ink, thick in ((theme.packed((0.0, 0.0, 0.0), 0.8), 4.0), (theme.packed(theme.WARM), 2.0)):
         for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):

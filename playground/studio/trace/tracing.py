@@ -92,6 +92,7 @@ class Tracing:
     inspector: Inspector = field(init=False)
     _fixed: Spot | None = None  # a texel that was chosen by number
     _seek: bool = False  # the next trace is to show its first event that is not finite
+    _seek_run: int = 0  # the next trace is to show this run, from 1, of the caret's line
     _before: Trace | None = None  # before the last save
     _pixel: Pixel | None = None
     _spots_of: object = None
@@ -181,6 +182,18 @@ class Tracing:
         if self.view is not None:
             self.view.go_to(event)
             self.file, self.line, self.scrolls = event.path, event.line, True
+
+    def mark(self, size: tuple[float, float]) -> tuple[float, float] | None:
+        """Return where in a picture of a size the pinned texel is, in fractions; None where it is not."""
+        if self.pin is not None or self._fixed is None:
+            return self.pin
+        shown = self.session.view.map
+        result = self.session.result_of(shown.ref) if shown is not None else None
+        if shown is None or result is None or shown.ref.partition(":")[0] != self._fixed.path:
+            return None
+        texels, worst = result[0].size, max(n / side for n, side in zip(result[0].size, size, strict=True))
+        x, y = ((t + 0.5 - n / 2) / worst for t, n in zip(self._fixed.texel, texels, strict=True))
+        return 0.5 + x / size[0], 0.5 + y / size[1]
 
     def other(self) -> Trace | None:
         """Return the trace that the one shown is compared with."""
@@ -311,7 +324,9 @@ class Tracing:
     @property
     def _can_trace(self) -> bool:
         session = self.session
-        waits = session.is_preview or session.awaits_data or session.catch_up.behind is not None
+        moves = session.animated and session.clock.playing  # then a preview is all that there is
+        waits = session.is_preview and not moves
+        waits = waits or session.awaits_data or session.catch_up.behind is not None
         return session.plan is not None and session.engine.record.plan is not None and not waits
 
     def _wanted(self) -> object:
@@ -333,18 +348,20 @@ class Tracing:
         if pixel is None or plan is None or key == self._spots_of:
             return
         self._spots_of = key
+        wide, high = plan.frame_size  # fewer pixels than the picture has, in a preview
+        drawn = pixel[0] * wide // picture.size[0], pixel[1] * high // picture.size[1]
         report = self.inspector.at(pixel, picture)
         spots: dict[str, Spot] = {}
         if session.view.map is None:
-            spots["view"] = Spot("view", pixel)
+            spots["view"] = Spot("view", drawn)
         for sample in (report.shown, *report.samples) if report is not None else ():
             if sample is not None:
                 path = sample.name.partition(":")[0]
                 spots.setdefault(path, Spot(path, sample.texel))
         for path in plan.flat.outputs:  # as large as the picture: of other tools' shaders, passes of the view
             step = _step_of(plan, path)
-            if session.view.map is None and step is not None and step.size == picture.size:
-                spots.setdefault(path, Spot(path, pixel))
+            if session.view.map is None and step is not None and step.size == (wide, high):
+                spots.setdefault(path, Spot(path, drawn))
         able = [spot for spot in spots.values() if is_traceable(_step_of(plan, spot.path))]
         self.spots = (*able, *(spot for spot in spots.values() if spot not in able))
 
@@ -390,6 +407,11 @@ class Tracing:
         if self._seek:
             self._seek = False
             self.go_to_not_finite()
+        elif self._seek_run:
+            runs = run_events(trace, self.file, self.line)
+            run, self._seek_run = self._seek_run, 0
+            if run <= len(runs):
+                self.go_to(runs[run - 1])
 
     def _show(self, trace: Trace) -> None:
         self.view = TraceView(trace, self.selection, self.other())
@@ -444,8 +466,15 @@ class Tracing:
         texel, count, runs = found
         path = probe_map.probe.path
         self.pin, self._fixed = None, Spot(path, texel)
+        self._seek_run = runs
         more = f"; {count:,} texels in all" if count > 1 else "; in no other"
         self.probe_message = f"first at texel {texel[0]}, {texel[1]}, in run {runs}{more}"
+
+
+def run_events(trace: Trace, path: str, line: int) -> list[Event]:
+    """Return one event of each run of a line."""
+    events = [event for event in trace.lines(path).get(line, ()) if event.kind != "enter"]
+    return [event for event in events if event.place == events[0].place]
 
 
 def first_hit(session: Session, probe_map: ProbeMap) -> tuple[tuple[int, int], int, int] | None:
