@@ -65,7 +65,9 @@ def as_written(text: str) -> Iterator[Token]:
         start = token.start + 1
         yield token._replace(text="#", end=start)
         for inner in tokenize(token.text[1:])[0]:
-            yield inner._replace(start=inner.start + start, end=inner.end + start, spelled=inner.start + start)
+            yield inner._replace(
+                start=inner.start + start, end=inner.end + start, spelled=inner.start + start
+            )
 
 
 def is_named(line: str, names: Collection[str], *, called: bool = False) -> bool:
