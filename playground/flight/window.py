@@ -37,7 +37,7 @@ from playground.studio.reload.stages import Sandbox as Stage
 from playground.studio.reload.stages import explained, refusal
 from playground.studio.reload.watcher import Watcher
 from playground.studio.status import add_line, status_file
-from playground.studio.theme import ALARM, DIM, INK, WARM, Rgb, Theme, packed
+from playground.studio.theme import DARK, Rgb, Theme, packed
 from playground.studio.window import Window, wake
 
 # isort: split
@@ -401,7 +401,7 @@ class Instruments:
         low = room.y - _MARGIN
         _plate(self._values(flight), theme, (_MARGIN, low), align=(0.0, 1.0))
         state = "   ".join([*(label for label, on in self._states(paused) if on), "?  help"])
-        ink = ALARM if state.startswith("end") else INK
+        ink = DARK.alarm if state.startswith("end") else DARK.ink
         _plate(state, theme, (room.x - _MARGIN, low), align=(1.0, 1.0), ink=ink)
         if self.error is not None:
             self._draw_error(self.error, theme, room)
@@ -438,7 +438,7 @@ class Instruments:
         more = f"\n… and {counted(len(lines) - _ERRORS, 'more line')}" if len(lines) > _ERRORS else ""
         text = "\n".join(lines[:_ERRORS]) + more + "\nthe last good save is flown over"
         wide = max(room.x - 2 * (_MARGIN + _PADDING), 80.0)
-        _plate(text, theme, (_MARGIN, _MARGIN), ink=ALARM, alpha=0.85, wrap=wide)
+        _plate(text, theme, (_MARGIN, _MARGIN), ink=DARK.alarm, alpha=0.85, wrap=wide)
 
     def _draw_help(self, theme: Theme, room: ImVec2) -> None:
         with theme.font(theme.text):
@@ -452,8 +452,10 @@ class Instruments:
             over.add_rect_filled(ImVec2(left, top), corner, packed((0.06, 0.07, 0.08), 0.88), 8.0)
             for number, (key, meaning) in enumerate(HELP):
                 y = top + pad + number * line
-                over.add_text(ImVec2(left + pad, y), packed(WARM), key)
-                over.add_text(ImVec2(left + pad + keys + gap, y), packed(INK if meaning else DIM), meaning)
+                over.add_text(ImVec2(left + pad, y), packed(DARK.warm), key)
+                over.add_text(
+                    ImVec2(left + pad + keys + gap, y), packed(DARK.ink if meaning else DARK.dim), meaning
+                )
 
 
 def _plate(
@@ -462,7 +464,7 @@ def _plate(
     corner: tuple[float, float],
     *,
     align: tuple[float, float] = (0.0, 0.0),
-    ink: Rgb = INK,
+    ink: Rgb = DARK.ink,
     alpha: float = 0.55,
     wrap: float = -1.0,
 ) -> None:

@@ -29,6 +29,7 @@ from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, ComputeVariant, CpuSource, Kernel, PlainCompute, Value
+from playground.studio import theme
 from playground.studio.addition import Addition, FullScreen
 from playground.studio.bench import Host, Workbench
 from playground.studio.code.editors import Opener
@@ -458,7 +459,7 @@ class Live:
         window = self.window
         window.screen.use()
         window.screen.viewport = (0, 0, *window.pixels)
-        window.ctx.clear(0.06, 0.065, 0.07, 1.0)
+        window.ctx.clear(*theme.palette.surround, 1.0)
         compare, now = self.bench.inspection.compare, self.bench.notices.now()
         if picture is not None and not paint_both(compare, picture, window.screen, area, now):
             self.painter.paint(picture, window.screen, area)

@@ -31,7 +31,6 @@ SIDE_PANEL = QUIET | _F.no_title_bar | _F.no_move | _F.no_collapse | _F.no_scrol
 SIDE_PANEL |= _F.no_bring_to_front_on_focus
 OVERLAY = QUIET | _F.no_decoration | _F.no_move | _F.always_auto_resize | _F.no_focus_on_appearing
 """A box over the picture, as large as what is in it."""
-POPUP_COLOUR = theme.colour((0.125, 0.135, 0.145), 0.98)
 
 
 @contextmanager
@@ -237,7 +236,7 @@ def row(
     size, text = fitting_label(label, labels - imgui.get_style().item_spacing.x)
     imgui.push_font(None, size)
     if edited:
-        imgui.text_colored(theme.colour(theme.WARM), text)
+        imgui.text_colored(theme.colour(theme.palette.warm), text)
     else:
         imgui.text_unformatted(text)
     imgui.pop_font()
@@ -273,7 +272,7 @@ def slot() -> float:
 def cross(label: str, note: str, high: float = 0.0) -> bool:
     """Draw a row's reset where the cursor is, as high as the row; return whether it is clicked on."""
     clicked, hovered, middle = slot_button(label, note, high)
-    size, ink = imgui.calc_text_size("×"), theme.INK if hovered else theme.WARM
+    size, ink = imgui.calc_text_size("×"), theme.palette.ink if hovered else theme.palette.warm
     position = ImVec2(middle.x - size.x / 2, middle.y - size.y / 2)
     imgui.get_window_draw_list().add_text(position, theme.packed(ink), "×")
     return clicked

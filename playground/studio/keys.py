@@ -21,7 +21,6 @@ from playground.studio.addition import Layer
 from playground.studio.bench import Workbench
 from playground.studio.code.panel import ask_to_close, stay
 from playground.studio.draw import (
-    POPUP_COLOUR,
     QUIET,
     ctrl_held,
     keeps_keys,
@@ -280,7 +279,7 @@ def draw_keymap(interface: Interface, look: Theme) -> None:
     flags = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move
     flags |= imgui.WindowFlags_.no_resize | imgui.WindowFlags_.always_auto_resize
     cell = {imgui.StyleVar_.cell_padding: ImVec2(4 * look.scale, 0)}  # a small window has room for all
-    with window("keys", flags, ground=POPUP_COLOUR, rounding=8 * look.scale, sizes=cell):
+    with window("keys", flags, ground=theme.colour(theme.palette.popup, 0.98), rounding=8 * look.scale, sizes=cell):
         with look.font(look.bold, theme.TEXT_SIZE + 2):
             imgui.text_unformatted("Keys")
         names = [(", ".join(names), meaning) for meaning, names in keys_by_meaning().items()]
@@ -288,7 +287,7 @@ def draw_keymap(interface: Interface, look: Theme) -> None:
         line = imgui.get_text_line_height() / theme.TEXT_SIZE
         fitting = (s for s in _SIZES if (len(rows) + _AROUND) * line * s <= room.y)
         with look.font(look.text, next(fitting, _SIZES[-1])):
-            warm = theme.colour(theme.WARM)
+            warm = theme.colour(theme.palette.warm)
             cells = [
                 (partial(imgui.text_colored, warm, keys), partial(imgui.text_unformatted, meaning))
                 for keys, meaning in rows

@@ -116,7 +116,7 @@ class PictureMouse:
         ]
         if corners:
             draw = imgui.get_background_draw_list()
-            draw.add_polyline(corners, theme.packed(theme.WARM), 2, imgui.ImDrawFlags_.closed)
+            draw.add_polyline(corners, theme.packed(theme.palette.warm), 2, imgui.ImDrawFlags_.closed)
 
 
 def _dragged(button: int) -> bool:

@@ -35,7 +35,7 @@ def draw_waiting(text: str, area: Area) -> None:
     x, y, wide, high = area
     size = imgui.calc_text_size(text)
     position = ImVec2(x + (wide - size.x) / 2, y + (high - size.y) / 2)
-    imgui.get_background_draw_list().add_text(position, theme.packed(theme.DIM), text)
+    imgui.get_background_draw_list().add_text(position, theme.packed(theme.palette.dim), text)
 
 
 def draw_checking(session: Session, look: Theme, area: Area) -> None:
@@ -43,7 +43,7 @@ def draw_checking(session: Session, look: Theme, area: Area) -> None:
     checking = session.drafts.checking
     if checking is not None and checking[1] >= PATIENCE:
         margin = 14 * look.scale
-        _plate(checking_text(*checking), (area[0] + margin, area[1] + margin), look, ink=theme.WARM)
+        _plate(checking_text(*checking), (area[0] + margin, area[1] + margin), look, ink=theme.palette.warm)
 
 
 def draw_behind(session: Session, look: Theme, area: Area) -> None:
@@ -52,7 +52,7 @@ def draw_behind(session: Session, look: Theme, area: Area) -> None:
     if behind is not None and session.catch_up.seconds >= PATIENCE:
         margin = 14 * look.scale
         text, low = behind_text(*behind, session.catch_up.source), (area[0] + margin, area[1] + margin)
-        corner = _plate(text, low, look, ink=theme.WARM)
+        corner = _plate(text, low, look, ink=theme.palette.warm)
         if session.catch_up.source:
             _bar(behind[0] / behind[1], low[0], corner, look)
 
@@ -61,7 +61,7 @@ def _bar(fraction: float, left: float, corner: ImVec2, look: Theme) -> None:
     """Draw how much is done as a bar along the lower edge of a plate."""
     top, paint = corner.y - 3 * look.scale, imgui.get_foreground_draw_list()
     end = ImVec2(left + (corner.x - left) * fraction, corner.y)
-    paint.add_rect_filled(ImVec2(left, top), end, theme.packed(theme.WARM))
+    paint.add_rect_filled(ImVec2(left, top), end, theme.packed(theme.palette.warm))
 
 
 def behind_text(done: int, total: int, source: str = "") -> str:
@@ -104,7 +104,7 @@ def _plate(
     corner: tuple[float, float],
     look: Theme,
     *,
-    ink: theme.Rgb = theme.INK,
+    ink: theme.Rgb = theme.palette.ink,
     alpha: float = 1.0,
     wrap: float = -1.0,
     align: tuple[float, float] = (0.0, 0.0),
@@ -114,7 +114,7 @@ def _plate(
         text,
         corner,
         ink=theme.packed(ink, alpha),
-        ground=theme.packed(theme.GROUND, 0.92 * alpha),
+        ground=theme.packed(theme.palette.ground, 0.92 * alpha),
         padding=_PADDING * look.scale,
         rounding=6 * look.scale,
         wrap=wrap,

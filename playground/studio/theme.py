@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 from imgui_bundle import ImVec2, ImVec4, imgui
@@ -15,16 +16,69 @@ PANEL_WIDTH = 330.0
 Rgb = tuple[float, float, float]
 """A display-encoded colour, 0..1."""
 
-ACCENT = (0.47, 0.71, 0.47)  # the green of a meadow: what is set, what is active
-WARM = (0.93, 0.72, 0.38)  # what the user has edited
-ALARM = (0.98, 0.52, 0.45)
-DIM = (0.56, 0.60, 0.62)
-INK = (0.88, 0.90, 0.92)
 
-GROUND = (0.098, 0.106, 0.114)
-FIELD = (0.165, 0.178, 0.190)
-RAISED = (0.215, 0.232, 0.247)
-LINE = (0.30, 0.32, 0.34)
+@dataclass(frozen=True)
+class Palette:
+    """The colours of the interface.
+
+    ``ink``, ``dim``, ``accent``, ``warm`` and ``alarm`` write on ``ground``, ``popup`` and ``field`` with a
+    contrast of 4.5 : 1 at least (WCAG 2.2, 1.4.3).
+    """
+
+    is_light: bool
+    accent: Rgb  # what is set, what is active
+    warm: Rgb  # what the user has edited
+    alarm: Rgb
+    dim: Rgb
+    ink: Rgb
+    ground: Rgb
+    popup: Rgb
+    field: Rgb
+    raised: Rgb
+    line: Rgb
+    grab: Rgb  # the knob of a slider, a button that stands out
+    hover: Rgb
+    pressed: Rgb
+    surround: Rgb  # what is around the picture
+
+
+DARK = Palette(
+    is_light=False,
+    accent=(0.47, 0.71, 0.47),
+    warm=(0.93, 0.72, 0.38),
+    alarm=(0.98, 0.52, 0.45),
+    dim=(0.60, 0.64, 0.66),
+    ink=(0.88, 0.90, 0.92),
+    ground=(0.098, 0.106, 0.114),
+    popup=(0.125, 0.135, 0.145),
+    field=(0.165, 0.178, 0.190),
+    raised=(0.215, 0.232, 0.247),
+    line=(0.30, 0.32, 0.34),
+    grab=(0.29, 0.46, 0.32),
+    hover=(0.288, 0.30, 0.309),
+    pressed=(0.269, 0.28, 0.288),
+    surround=(0.06, 0.065, 0.07),
+)
+LIGHT = Palette(
+    is_light=True,
+    accent=(0.12, 0.38, 0.15),
+    warm=(0.52, 0.30, 0.00),
+    alarm=(0.68, 0.12, 0.08),
+    dim=(0.34, 0.37, 0.39),
+    ink=(0.09, 0.10, 0.11),
+    ground=(0.955, 0.960, 0.965),
+    popup=(0.985, 0.988, 0.990),
+    field=(0.885, 0.893, 0.900),
+    raised=(0.830, 0.842, 0.852),
+    line=(0.70, 0.72, 0.74),
+    grab=(0.45, 0.68, 0.47),
+    hover=(0.76, 0.775, 0.788),
+    pressed=(0.70, 0.72, 0.735),
+    surround=(0.90, 0.905, 0.91),
+)
+
+palette = DARK
+"""The colours in use: read as ``theme.palette`` in each frame; ``Theme.choose`` changes it."""
 
 
 class Theme:
@@ -40,6 +94,13 @@ class Theme:
         self.code = _font(code, regular, symbols)
         self.scale = 0.0  # of text and margins
         self.rescale(1.0)
+
+    def choose(self, chosen: Palette) -> None:
+        """Use other colours from the next frame on."""
+        global palette
+        if chosen is not palette:
+            palette = chosen
+            _take(_style(self.scale))
 
     def rescale(self, scale: float) -> None:
         """Fit the style to a screen; does nothing while the scale stays."""
@@ -81,7 +142,7 @@ def packed(rgb: Rgb, alpha: float = 1.0) -> int:
 def _style(scale: float) -> imgui.Style:
     """Return the style for a screen of that scale."""
     style = imgui.Style()
-    imgui.style_colors_dark(style)
+    (imgui.style_colors_light if palette.is_light else imgui.style_colors_dark)(style)
     style.font_size_base = TEXT_SIZE
     style.window_padding = ImVec2(12, 10)
     style.frame_padding = ImVec2(8, 4)
@@ -119,43 +180,56 @@ def _take(style: imgui.Style) -> None:
 
 
 def _colours() -> dict[str, ImVec4]:
-    def grey(level: float, alpha: float = 1.0) -> ImVec4:
-        return ImVec4(level * 0.96, level, level * 1.03, alpha)
-
+    now = palette
     return {
-        "text": colour(INK),
-        "text_disabled": colour(DIM),
-        "window_bg": colour(GROUND),
-        "child_bg": colour(GROUND, 0.0),
-        "popup_bg": colour((0.125, 0.135, 0.145), 0.98),
-        "border": grey(0.30),
-        "frame_bg": colour(FIELD),
-        "frame_bg_hovered": colour(RAISED),
-        "frame_bg_active": grey(0.28),
-        "title_bg": colour(GROUND),
-        "title_bg_active": colour(GROUND),
-        "scrollbar_bg": colour(GROUND, 0.0),
-        "scrollbar_grab": grey(0.26),
-        "scrollbar_grab_hovered": grey(0.34),
-        "scrollbar_grab_active": grey(0.42),
-        "check_mark": colour(ACCENT),
-        "slider_grab": colour((0.29, 0.46, 0.32)),
-        "slider_grab_active": colour((0.36, 0.56, 0.38)),
-        "button": colour(RAISED),
-        "button_hovered": grey(0.30),
-        "button_active": colour(ACCENT, 0.6),
-        "header": colour(FIELD),
-        "header_hovered": colour(RAISED),
-        "header_active": grey(0.28),
-        "separator": grey(0.22),
-        "separator_hovered": colour(ACCENT, 0.6),
-        "separator_active": colour(ACCENT),
-        "resize_grip": grey(0.3, 0.0),
-        "resize_grip_hovered": colour(ACCENT, 0.6),
-        "resize_grip_active": colour(ACCENT),
-        "text_selected_bg": colour(ACCENT, 0.35),
-        "nav_cursor": colour(ACCENT),
-        "plot_histogram": colour(ACCENT),
-        "table_row_bg": grey(0.0, 0.0),
-        "table_row_bg_alt": grey(1.0, 0.025),
+        "text": colour(now.ink),
+        "text_disabled": colour(now.dim),
+        "window_bg": colour(now.ground),
+        "child_bg": colour(now.ground, 0.0),
+        "popup_bg": colour(now.popup, 0.98),
+        "border": colour(now.line),
+        "frame_bg": colour(now.field),
+        "frame_bg_hovered": colour(now.raised),
+        "frame_bg_active": colour(now.pressed),
+        "title_bg": colour(now.ground),
+        "title_bg_active": colour(now.ground),
+        "title_bg_collapsed": colour(now.ground),
+        "menu_bar_bg": colour(now.ground),
+        "scrollbar_bg": colour(now.ground, 0.0),
+        "scrollbar_grab": colour(now.hover),
+        "scrollbar_grab_hovered": colour(now.line),
+        "scrollbar_grab_active": colour(now.dim),
+        "check_mark": colour(now.accent),
+        "slider_grab": colour(now.grab),
+        "slider_grab_active": colour(now.accent),
+        "button": colour(now.raised),
+        "button_hovered": colour(now.hover),
+        "button_active": colour(now.grab),
+        "header": colour(now.field),
+        "header_hovered": colour(now.raised),
+        "header_active": colour(now.pressed),
+        "separator": colour(now.field),
+        "separator_hovered": colour(now.accent, 0.6),
+        "separator_active": colour(now.accent),
+        "resize_grip": colour(now.line, 0.0),
+        "resize_grip_hovered": colour(now.accent, 0.6),
+        "resize_grip_active": colour(now.accent),
+        "tab": colour(now.ground),
+        "tab_hovered": colour(now.raised),
+        "tab_selected": colour(now.field),
+        "tab_selected_overline": colour(now.accent),
+        "tab_dimmed": colour(now.ground),
+        "tab_dimmed_selected": colour(now.field),
+        "tab_dimmed_selected_overline": colour(now.line),
+        "docking_preview": colour(now.accent, 0.5),
+        "docking_empty_bg": colour(now.surround),
+        "text_selected_bg": colour(now.accent, 0.35),
+        "nav_cursor": colour(now.accent),
+        "plot_lines": colour(now.ink),
+        "plot_histogram": colour(now.accent),
+        "table_header_bg": colour(now.field),
+        "table_border_strong": colour(now.line),
+        "table_border_light": colour(now.raised),
+        "table_row_bg": colour(now.ground, 0.0),
+        "table_row_bg_alt": colour(now.ink, 0.04 if now.is_light else 0.025),
     }

@@ -147,7 +147,7 @@ def _hidden_number(typed: bool) -> Iterator[bool]:
     """
     hidden = not (typed and imgui.get_io().want_text_input)
     if hidden:
-        imgui.push_style_color(imgui.Col_.text, theme.colour(theme.INK, 0.0))
+        imgui.push_style_color(imgui.Col_.text, theme.colour(theme.palette.ink, 0.0))
     yield hidden
     if hidden:
         imgui.pop_style_color()
@@ -305,16 +305,18 @@ def _direction(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | 
     origin, side, field, dragged = _pad(slot)
     radius, draw = side / 2, imgui.get_window_draw_list()
     middle = ImVec2(origin.x + radius, origin.y + radius)
-    draw.add_circle_filled(middle, radius - 1, theme.packed(theme.FIELD))
+    draw.add_circle_filled(middle, radius - 1, theme.packed(theme.palette.field))
     for fraction in (1.0, 2 / 3, 1 / 3):  # the horizon, 30 and 60 degrees
-        draw.add_circle(middle, (radius - 1) * fraction, theme.packed(theme.LINE), 0, slot.scale)
+        draw.add_circle(middle, (radius - 1) * fraction, theme.packed(theme.palette.line), 0, slot.scale)
     north = imgui.calc_text_size("N")
-    draw.add_text(ImVec2(middle.x - north.x / 2, origin.y + slot.scale), theme.packed(theme.DIM), "N")
+    draw.add_text(ImVec2(middle.x - north.x / 2, origin.y + slot.scale), theme.packed(theme.palette.dim), "N")
     right, up = dot_of(azimuth, elevation)
     dot = ImVec2(middle.x + right * (radius - 1), middle.y - up * (radius - 1))
     below = elevation < 0
-    draw.add_line(middle, dot, theme.packed(theme.WARM, 0.5), slot.scale)
-    draw.add_circle_filled(dot, 5 * slot.scale, theme.packed(theme.DIM if below else theme.WARM))
+    draw.add_line(middle, dot, theme.packed(theme.palette.warm, 0.5), slot.scale)
+    draw.add_circle_filled(
+        dot, 5 * slot.scale, theme.packed(theme.palette.dim if below else theme.palette.warm)
+    )
     result: Value | None = None
     if dragged is not None:
         across, down = dragged
@@ -351,11 +353,15 @@ def _point(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None
     origin, side, field, dragged = _pad(slot)
     draw = imgui.get_window_draw_list()
     corner = ImVec2(origin.x + side, origin.y + side)
-    draw.add_rect_filled(origin, corner, theme.packed(theme.FIELD), 5 * slot.scale)
+    draw.add_rect_filled(origin, corner, theme.packed(theme.palette.field), 5 * slot.scale)
     dot = ImVec2(origin.x + across * side, origin.y + (1 - up) * side)
-    draw.add_line(ImVec2(dot.x, origin.y), ImVec2(dot.x, corner.y), theme.packed(theme.LINE), slot.scale)
-    draw.add_line(ImVec2(origin.x, dot.y), ImVec2(corner.x, dot.y), theme.packed(theme.LINE), slot.scale)
-    draw.add_circle_filled(dot, 5 * slot.scale, theme.packed(theme.WARM))
+    draw.add_line(
+        ImVec2(dot.x, origin.y), ImVec2(dot.x, corner.y), theme.packed(theme.palette.line), slot.scale
+    )
+    draw.add_line(
+        ImVec2(origin.x, dot.y), ImVec2(corner.x, dot.y), theme.packed(theme.palette.line), slot.scale
+    )
+    draw.add_circle_filled(dot, 5 * slot.scale, theme.packed(theme.palette.warm))
     result: Value | None = None
     if dragged is not None:
         fractions = (dragged[0], 1 - dragged[1])

@@ -127,7 +127,7 @@ class Prose:
     ) -> None:
         """Draw a text where the cursor is, over the width that is left."""
         wide = imgui.get_content_region_avail().x
-        ink = theme.packed(theme.INK) if ink is None else ink
+        ink = theme.packed(theme.palette.ink) if ink is None else ink
         layout = self._layout_of(words, look, size, ink, wide)
         corner = imgui.get_cursor_screen_pos()
         imgui.dummy(ImVec2(min(layout.width, wide), max(layout.height, 1.0)))
@@ -138,7 +138,7 @@ class Prose:
             x, y = corner.x + piece.x, corner.y + piece.y
             if piece.box is not None:
                 wide_box, high_box, what = piece.box
-                colour = theme.packed(theme.LINE if what == "rule" else theme.FIELD)
+                colour = theme.packed(theme.palette.line if what == "rule" else theme.palette.field)
                 draw.add_rect_filled(ImVec2(x, y), ImVec2(x + wide_box, y + high_box), colour, 4 * look.scale)
             elif piece.line is not None:
                 for run in piece.line.runs:
@@ -200,10 +200,10 @@ class Prose:
         font, size = _font(run, size, look)
         text = written(run.text)
         if run.code and not run.alone and text.strip():
-            draw.add_rect_filled(low, high, theme.packed(theme.FIELD), 3 * look.scale)
+            draw.add_rect_filled(low, high, theme.packed(theme.palette.field), 3 * look.scale)
             low = ImVec2(low.x + _PAD * look.scale, low.y)
         if run.link:
-            ink = theme.packed(theme.ACCENT)
+            ink = theme.packed(theme.palette.accent)
             self._link(run, low, high, baseline)
         draw.add_text(font, size * look.scale, low, ink, text)
 
@@ -212,7 +212,7 @@ class Prose:
         under = imgui.is_window_hovered() and imgui.is_mouse_hovering_rect(low, high)
         alpha = 1.0 if under else 0.45
         line = baseline + 2
-        draw.add_line(ImVec2(low.x, line), ImVec2(high.x, line), theme.packed(theme.ACCENT, alpha))
+        draw.add_line(ImVec2(low.x, line), ImVec2(high.x, line), theme.packed(theme.palette.accent, alpha))
         if under:
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
             explain(written(self.describe(run.link)), "")
@@ -249,11 +249,11 @@ class Page:
     def text(self, words: Markdown, *, size: float = TEXT, dim: bool = False) -> None:
         """Draw a text of the lesson, its numbers in their places."""
         if words:
-            ink = theme.packed(theme.DIM if dim else theme.INK)
+            ink = theme.packed(theme.palette.dim if dim else theme.palette.ink)
             filled = self.reader.numbers.fill(words, self.lesson)
             self.prose.draw(filled, self.look, size=size, ink=ink)
 
-    def plain(self, words: str, rgb: theme.Rgb = theme.INK) -> None:
+    def plain(self, words: str, rgb: theme.Rgb = theme.palette.ink) -> None:
         """Draw a text that is no Markdown, as a compiler's words, wrapped."""
         with self.look.font(self.look.code, theme.SMALL), inked(rgb):
             imgui.text_wrapped(written(words))
@@ -271,13 +271,13 @@ class Page:
         if self.button(f"{self.say('hide')}##{what}"):
             shown.discard(key)
 
-    def label(self, text: str, rgb: theme.Rgb = theme.ACCENT) -> None:
+    def label(self, text: str, rgb: theme.Rgb = theme.palette.accent) -> None:
         """Write a block's label."""
         with self.look.font(self.look.bold, theme.SMALL):
             imgui.text_colored(theme.colour(rgb), text)
 
     @contextmanager
-    def frame(self, name: str, rgb: theme.Rgb = theme.LINE) -> Iterator[None]:
+    def frame(self, name: str, rgb: theme.Rgb = theme.palette.line) -> Iterator[None]:
         """Draw the block inside with a bar on its left."""
         scale = self.look.scale
         with pushed_id(name):
@@ -293,7 +293,7 @@ class Page:
 
     def button(self, text: str, note: str = "", *, on: bool = False, enabled: bool = True) -> bool:
         """Draw a button; ``on``: it is in effect already. Return whether it is pressed."""
-        with styled({imgui.Col_.button: theme.colour(theme.ACCENT, 0.45)} if on else {}):
+        with styled({imgui.Col_.button: theme.colour(theme.palette.accent, 0.45)} if on else {}):
             return button(written(text), written(note), enabled=enabled)
 
     def same_line(self, text: str) -> None:

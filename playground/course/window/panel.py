@@ -65,7 +65,7 @@ from playground.studio.panel.passes_panel import Rows
 from playground.studio.theme import Theme
 from playground.studio.widgets import slide_whole
 
-_ON, _OFF = theme.ACCENT, theme.LINE
+_ON, _OFF = theme.palette.accent, theme.palette.line
 
 
 def draw_figure(block: Figure, page: Page) -> None:
@@ -213,7 +213,7 @@ def draw_code_block(block: Code, page: Page) -> None:
     """Draw an excerpt of a shader as it is now, with a way to edit a copy of it."""
     bugs = page.reader.bugs
     edited = bugs.is_edited(block)
-    with page.frame(block.name, theme.WARM if edited else theme.LINE):
+    with page.frame(block.name, theme.palette.warm if edited else theme.palette.line):
         try:
             quoted = bugs.excerpt(block)
         except PlaygroundError as error:
@@ -237,7 +237,7 @@ def draw_trace(block: Trace, page: Page) -> None:
     reader = page.reader
     lines = reader.numbers.traces.get((page.lesson.name, block.name))
     failed = reader.numbers.failed.get((page.lesson.name, block.name))
-    with page.frame(block.name, theme.LINE):
+    with page.frame(block.name, theme.palette.line):
         with page.look.font(page.look.text, theme.SMALL):
             texel = page.say("texel_of", x=block.texel[0], y=block.texel[1])
             imgui.text_disabled(f"glsl/{block.file}, {texel}")
@@ -256,7 +256,7 @@ def draw_trace(block: Trace, page: Page) -> None:
                 page.plain(line.code or " ")
                 indent = " " * (len(line.code) - len(line.code.lstrip()) + 2)
                 for value in filter(None, (each.text(at, reveals=answered) for each in line.values)):
-                    page.plain(f"{indent}{value}", theme.ACCENT)
+                    page.plain(f"{indent}{value}", theme.palette.accent)
         page.text(block.caption, size=theme.SMALL, dim=True)
 
 
@@ -264,7 +264,13 @@ def draw_break(block: Break, page: Page) -> None:
     """Draw a bug: it is put into the picture, searched for, and fixed."""
     bugs = page.reader.bugs
     state = bugs.state.get(block.name, "")
-    rgb = theme.ALARM if state == BROKEN else theme.ACCENT if state in (FIXED, SHOWN) else theme.WARM
+    rgb = (
+        theme.palette.alarm
+        if state == BROKEN
+        else theme.palette.accent
+        if state in (FIXED, SHOWN)
+        else theme.palette.warm
+    )
     with page.frame(block.name, rgb):
         page.label(page.say("bug"), rgb)
         page.text(block.ask)
@@ -315,8 +321,8 @@ def draw_challenge(block: Challenge, page: Page) -> None:
     tasks = page.reader.tasks
     match, best = tasks.judging.matches.get(block.name), tasks.attempt(block).score
     solved = best >= block.goal
-    with page.frame(block.name, theme.ACCENT if solved else theme.WARM):
-        page.label(page.say("challenge"), theme.ACCENT if solved else theme.WARM)
+    with page.frame(block.name, theme.palette.accent if solved else theme.palette.warm):
+        page.label(page.say("challenge"), theme.palette.accent if solved else theme.palette.warm)
         page.text(block.ask)
         target = tasks.judging.target(block)
         if target is not None:
@@ -332,13 +338,13 @@ def draw_challenge(block: Challenge, page: Page) -> None:
             imgui.text_disabled(page.say(key, *shown))
         if solved:
             with page.look.font(page.look.bold):
-                imgui.text_colored(theme.colour(theme.ACCENT), page.say("solved"))
+                imgui.text_colored(theme.colour(theme.palette.accent), page.say("solved"))
         imgui.end_group()
         _buttons(block, page)
         if tasks.is_begun(block):
             _sliders(block, page)
         for diagnostic in match.diagnostics if match is not None else ():
-            page.plain(str(diagnostic), theme.ALARM)
+            page.plain(str(diagnostic), theme.palette.alarm)
         page.behind(block.name, "hint", block.hint)
         page.behind(block.name, "solution", block.solution)
         page.text(block.caption, size=theme.SMALL, dim=True)
@@ -399,14 +405,14 @@ def _sliders(block: Task, page: Page) -> None:
 
 def _verdict(block: Exercise, verdict: Verdict, page: Page) -> None:
     language = page.reader.language
-    rgb = theme.ACCENT if verdict.passed else theme.WARM
+    rgb = theme.palette.accent if verdict.passed else theme.palette.warm
     with page.look.font(page.look.bold):
         imgui.text_colored(theme.colour(rgb), points_of(verdict, language))
     tasks = page.reader.tasks
     if tasks.is_begun(block) and tasks.work(block) != tasks.judging.judged.get(block.name):
         page.text(page.say("changed_since"), size=theme.SMALL, dim=True)
     for diagnostic in verdict.diagnostics:
-        page.plain(str(diagnostic), theme.ALARM)
+        page.plain(str(diagnostic), theme.palette.alarm)
     for result in verdict.results:
         _mark(page, good=result.passed)
         page.text(sentence_of(result, language), size=theme.SMALL + 1)
@@ -430,7 +436,7 @@ def _mark(page: Page, *, good: bool) -> None:
     side, draw = 9.0 * page.look.scale, imgui.get_window_draw_list()
     at = imgui.get_cursor_screen_pos()
     low = ImVec2(at.x, at.y + 4.0 * page.look.scale)
-    ink, thick = theme.packed(theme.ACCENT if good else theme.ALARM), 2.0 * page.look.scale
+    ink, thick = theme.packed(theme.palette.accent if good else theme.palette.alarm), 2.0 * page.look.scale
     if good:
         middle = ImVec2(low.x + 0.35 * side, low.y + side)
         draw.add_line(ImVec2(low.x, low.y + 0.6 * side), middle, ink, thick)
@@ -470,8 +476,8 @@ def draw_prose(block: Prose, page: Page) -> None:
 def draw_question(block: Question, page: Page) -> None:
     """Draw a question; its answer waits behind a button."""
     reader = page.reader
-    with page.frame(block.name, theme.WARM):
-        page.label(page.say("question"), theme.WARM)
+    with page.frame(block.name, theme.palette.warm):
+        page.label(page.say("question"), theme.palette.warm)
         page.text(block.ask)
         chosen = reader.chosen.get(block.name, -1)
         for index, choice in enumerate(block.choices):
@@ -490,8 +496,8 @@ def draw_question(block: Question, page: Page) -> None:
 def draw_exercise(block: Exercise, page: Page) -> None:
     """Draw an exercise; hint and solution wait behind buttons."""
     reader = page.reader
-    with page.frame(block.name, theme.WARM):
-        page.label(task_label(block, page), theme.WARM)
+    with page.frame(block.name, theme.palette.warm):
+        page.label(task_label(block, page), theme.palette.warm)
         page.text(block.ask)
         if checks_itself(block):
             draw_work(block, page)
@@ -510,7 +516,7 @@ def draw_measure(block: Measure, page: Page) -> None:
     failed = reader.numbers.failed.get((page.lesson.name, block.name))
     if not block.sentence and failed is None:
         return  # it is in the prose
-    with page.frame(block.name, theme.LINE):
+    with page.frame(block.name, theme.palette.line):
         waits = any(reader.numbers.waits(page.lesson, name) for name in named_in(block.sentence))
         page.label(page.say("measuring") if waits else page.say("measured"))
         if failed is not None:
@@ -541,7 +547,7 @@ def _number(block: Question, page: Page) -> None:
 def _choice(block: Question, index: int, choice: str, chosen: int, page: Page) -> None:
     """Draw one of several answers, as wide as the page."""
     on = chosen == index
-    ink = theme.ACCENT if index == block.right else theme.ALARM
+    ink = theme.palette.accent if index == block.right else theme.palette.alarm
     with pushed_id(index):
         with styled({imgui.Col_.text: theme.colour(ink)} if on else {}):
             marked = imgui.radio_button("##choice", on)
@@ -652,7 +658,7 @@ class LessonPanel:
         imgui.set_next_window_size_constraints(
             ImVec2(min(MIN_WIDTH * scale, widest), room.y), ImVec2(min(MAX_WIDTH * scale, widest), room.y)
         )
-        with window("lesson", SIDE_PANEL, ground=theme.colour((0.110, 0.119, 0.127))):
+        with window("lesson", SIDE_PANEL, ground=theme.colour(theme.palette.ground)):
             page = Page(reader, lesson, look, self._texts, self.memory, self._textures_of(reader), present)
             _head(page)
             scrolls = imgui.WindowFlags_.always_vertical_scrollbar
@@ -695,7 +701,7 @@ def _head(page: Page) -> None:
         for summary in reader.summaries:
             done = summary.name in reader.progress.done  # read to its end: in green
             label = f"{summary.number}  {written(summary.title)}##{summary.name}"
-            with inked(theme.ACCENT if done else theme.INK):
+            with inked(theme.palette.accent if done else theme.palette.ink):
                 if imgui.selectable(label, summary.name == lesson.name)[0]:
                     reader.open(summary.name)
             minutes = page.say("minutes", summary.minutes, summary.exercise_minutes)
@@ -732,7 +738,7 @@ def _pages(page: Page) -> None:
         over = imgui.is_window_hovered() and imgui.is_mouse_hovering_rect(
             ImVec2(low.x - gap / 2, low.y - 4 * scale), reach
         )
-        rgb = theme.ACCENT if index <= at else theme.RAISED
+        rgb = theme.palette.accent if index <= at else theme.palette.raised
         alpha = 1.0 if index == at or over else 0.5
         draw.add_rect_filled(low, high_corner, theme.packed(rgb, alpha), high / 2)
         if over:
@@ -788,7 +794,7 @@ def _foot(page: Page) -> None:
     following = next((summary for summary in reader.summaries if summary.number > page.lesson.number), None)
     text = page.say("next_lesson") if last else page.say("next")
     note = "PgDn" if not last else following.title if following else ""
-    with styled({imgui.Col_.button: theme.colour((0.29, 0.46, 0.32))}):
+    with styled({imgui.Col_.button: theme.colour(theme.palette.grab)}):
         if button(f"{text}##next", note, enabled=not last or following is not None, wide=half):
             if not last:
                 reader.turn_page(1)

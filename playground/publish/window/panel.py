@@ -11,7 +11,7 @@ from playground.publish.sweep import parts_of, sweep_text
 from playground.publish.video import QUALITIES
 from playground.publish.window.captures import MULTIPLES, Captures, CaptureSettings, open_folder
 from playground.studio import theme
-from playground.studio.draw import POPUP_COLOUR, QUIET, button, choose, disabled, row, styled, wrapped
+from playground.studio.draw import QUIET, button, choose, disabled, row, styled, wrapped
 from playground.studio.edits.edits import Draft
 from playground.studio.panel.parameter_list import items_of
 from playground.studio.theme import Theme
@@ -27,7 +27,7 @@ def draw_capture(captures: Captures, look: Theme) -> None:
     imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.appearing, ImVec2(0.5, 0.5))
     imgui.set_next_window_size(ImVec2(min(430 * look.scale, room.x - 16), 0))
     flags = QUIET | imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_resize
-    with styled({imgui.Col_.window_bg: POPUP_COLOUR}):
+    with styled({imgui.Col_.window_bg: theme.colour(theme.palette.popup, 0.98)}):
         visible, stays = imgui.begin("Capture###capture", True, flags)
         captures.shown = bool(stays)
         if visible:
@@ -132,7 +132,7 @@ def _result(captures: Captures) -> None:
     imgui.text_disabled(captures.summary())
     if captures.failed:
         with wrapped():
-            imgui.text_colored(theme.colour(theme.ALARM), captures.failed)
+            imgui.text_colored(theme.colour(theme.palette.alarm), captures.failed)
     elif captures.made is not None:
         with wrapped():
             imgui.text_unformatted(f"saved {shown(captures.made)}")

@@ -207,8 +207,8 @@ def _draw(editing: Editing, notices: Notices, problems: Problems, look: Theme, a
     if view.changed:
         flags |= imgui.WindowFlags_.unsaved_document
     colours = {
-        imgui.Col_.window_bg: theme.colour(theme.GROUND, 0.98),
-        imgui.Col_.title_bg_active: theme.colour(theme.RAISED),
+        imgui.Col_.window_bg: theme.colour(theme.palette.ground, 0.98),
+        imgui.Col_.title_bg_active: theme.colour(theme.palette.raised),
     }
     with styled(colours):
         star = " *" if view.changed else ""
@@ -308,7 +308,7 @@ def _mark(editing: Editing, view: _View, problems: Problems) -> None:
     view.marked = mine
     view.editor.clear_markers()
     for diagnostic in reversed(mine):
-        rgb = theme.ALARM if diagnostic.severity == "error" else theme.WARM
+        rgb = theme.palette.alarm if diagnostic.severity == "error" else theme.palette.warm
         note = textwrap.fill(diagnostic.message, 60)
         view.editor.add_marker(
             diagnostic.line - 1, theme.packed(rgb, 0.8), theme.packed(rgb, 0.22), note, note

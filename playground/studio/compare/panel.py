@@ -73,15 +73,17 @@ def draw_ab(compare: Compare, undo: Undo, look: Theme, area: Area) -> None:
     if compare.mode is Mode.DIVIDER:
         line = x + compare.split * wide
         draw = imgui.get_background_draw_list()
-        draw.add_line(ImVec2(line, y), ImVec2(line, y + high), theme.packed(theme.INK, 0.9), 1.5 * scale)
+        draw.add_line(
+            ImVec2(line, y), ImVec2(line, y + high), theme.packed(theme.palette.ink, 0.9), 1.5 * scale
+        )
         middle = y + high / 2
         for letter, away in (("A", -18.0), ("B", 10.0)):
             position = ImVec2(line + away * scale, middle)
             draw.add_text(ImVec2(position.x + 1, position.y + 1), theme.packed((0.0, 0.0, 0.0)), letter)
-            draw.add_text(position, theme.packed(theme.INK), letter)
+            draw.add_text(position, theme.packed(theme.palette.ink), letter)
     margin = 12 * scale
     imgui.set_next_window_pos(ImVec2(x + margin, y + margin))
-    with window("ab", OVERLAY, ground=theme.colour(theme.GROUND, 0.9), rounding=8 * scale):
+    with window("ab", OVERLAY, ground=theme.colour(theme.palette.ground, 0.9), rounding=8 * scale):
         _bar(compare, undo, look)
 
 
@@ -100,7 +102,7 @@ def _bar(compare: Compare, undo: Undo, look: Theme) -> None:
     }
     imgui.align_text_to_frame_padding()
     with look.font(look.bold):
-        imgui.text_colored(theme.colour(theme.WARM), f"{letters[compare.mode]:5}")
+        imgui.text_colored(theme.colour(theme.palette.warm), f"{letters[compare.mode]:5}")
     imgui.same_line()
     imgui.set_next_item_width(100 * look.scale)
     mode = choose("##how", compare.mode.value, Mode, compare.mode, name=lambda m: m.value)

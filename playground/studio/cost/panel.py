@@ -54,7 +54,7 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
 
     def name(path: str) -> None:
         ran = path in engine.record.ran
-        imgui.text_colored(theme.colour(theme.ACCENT if ran else theme.INK), path)
+        imgui.text_colored(theme.colour(theme.palette.accent if ran else theme.palette.ink), path)
         if why := inspection.reasons.text(path):
             imgui.set_item_tooltip(why)
 

@@ -43,7 +43,7 @@ def draw_graph(session: Session, inspection: Inspection, look: Theme, area: Area
     size = ImVec2(max(wide - 2 * margin, 200.0), max(min(0.62 * high, high - 2 * margin), 160.0))
     imgui.set_next_window_size(size, imgui.Cond_.appearing)
     flags = QUIET | imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.horizontal_scrollbar
-    ground, rounding = theme.colour(theme.GROUND, 0.95), 8 * scale
+    ground, rounding = theme.colour(theme.palette.ground, 0.95), 8 * scale
     with styled({imgui.Col_.window_bg: ground}, {imgui.StyleVar_.window_rounding: rounding}):
         visible, stays = imgui.begin("Passes###graph", True, flags)
         graph.on = bool(stays)
@@ -79,8 +79,8 @@ def _nodes(drawing: _Drawing) -> None:
         start = ImVec2(x0 + _WIDE * scale, y0 + drawing.high / 2)
         end, bend = ImVec2(x1, y1 + drawing.high / 2), _GAP_X * scale
         first, second = ImVec2(start.x + bend, start.y), ImVec2(end.x - bend, end.y)
-        draw.add_bezier_cubic(start, first, second, end, theme.packed(theme.LINE), 2 * scale)
-        draw.add_circle_filled(end, 3 * scale, theme.packed(theme.DIM))
+        draw.add_bezier_cubic(start, first, second, end, theme.packed(theme.palette.line), 2 * scale)
+        draw.add_circle_filled(end, 3 * scale, theme.packed(theme.palette.dim))
     for node, ref in wiring.refs.items():
         _node(node, ref, drawing)
 
@@ -98,22 +98,24 @@ def _node(node: str, ref: str, drawing: _Drawing) -> None:
         imgui.set_tooltip("\n".join(filter(None, [_tooltip(node, session), drawing.reasons.text(node)])))
     shown = session.view.map.ref == ref if session.view.map is not None else node == "view"
     draw = imgui.get_window_draw_list()
-    draw.add_rect_filled(corner, far, theme.packed(theme.RAISED if hovered else theme.FIELD), 6 * scale)
+    draw.add_rect_filled(
+        corner, far, theme.packed(theme.palette.raised if hovered else theme.palette.field), 6 * scale
+    )
     if shown:
-        draw.add_rect(corner, far, theme.packed(theme.ACCENT), 6 * scale, 2 * scale)
+        draw.add_rect(corner, far, theme.packed(theme.palette.accent), 6 * scale, 2 * scale)
     left, top = x + (_WIDE - _THUMB) / 2 * scale, y + 6 * scale
     low, high = ImVec2(left, top), ImVec2(left + _THUMB * scale, top + _THUMB * scale)
     texture = thumbnails.get(ref)
     if texture is None:
-        draw.add_rect(low, high, theme.packed(theme.LINE))
+        draw.add_rect(low, high, theme.packed(theme.palette.line))
     else:
         dim = 1.0 if thumbnails.is_current(ref) else 0.45  # of another picture than the last
         tint = theme.packed((1.0, 1.0, 1.0), dim)
         draw.add_image(imgui.ImTextureRef(texture.glo), low, high, ImVec2(0, 1), ImVec2(1, 0), tint)
     runs, ran, spent = cost_of(session, node)
-    lines = [(node, theme.INK), (runs, theme.ACCENT if ran else theme.DIM)]
+    lines = [(node, theme.palette.ink), (runs, theme.palette.accent if ran else theme.palette.dim)]
     if session.engine.options.profiling:
-        lines.append((f"{spent:.2f} ms" if spent is not None else "", theme.DIM))
+        lines.append((f"{spent:.2f} ms" if spent is not None else "", theme.palette.dim))
     line = imgui.get_text_line_height()
     for number, (text, ink) in enumerate(lines):
         text = fitting(text, (_WIDE - 8) * scale)

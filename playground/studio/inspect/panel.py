@@ -76,12 +76,14 @@ def _legend(shown: Map, session: Session, inspection: Inspection, look: Theme) -
     for which, mark in enumerate(marks):
         x = corner.x + wide * (mark / factor - low) / (high - low) if factor else corner.x
         draw.add_line(
-            ImVec2(x, corner.y + bar), ImVec2(x, corner.y + bar + 3 * look.scale), theme.packed(theme.INK)
+            ImVec2(x, corner.y + bar),
+            ImVec2(x, corner.y + bar + 3 * look.scale),
+            theme.packed(theme.palette.ink),
         )
         text = f"{mark:g}{unit if which == len(marks) - 1 else ''}"
         size = imgui.calc_text_size(text).x
         left = min(max(x - size / 2, corner.x), corner.x + wide - size)
-        draw.add_text(ImVec2(left, corner.y + bar + 3 * look.scale), theme.packed(theme.DIM), text)
+        draw.add_text(ImVec2(left, corner.y + bar + 3 * look.scale), theme.packed(theme.palette.dim), text)
     if imgui.is_item_hovered():
         fraction = (imgui.get_io().mouse_pos.x - corner.x) / wide
         number = low + fraction * (high - low)
@@ -111,7 +113,7 @@ def _plot(histogram: Histogram, shown: Map, inspection: Inspection, look: Theme)
         for number, channel in enumerate(histogram.channels):
             spec = implot.Spec()
             alone = len(histogram.channels) == 1
-            ink = ImVec4(*(theme.INK if alone else _INKS[number]), 1.0)
+            ink = ImVec4(*(theme.palette.ink if alone else _INKS[number]), 1.0)
             spec.line_color, spec.fill_color, spec.fill_alpha = ink, ink, 0.25
             heights = np.maximum(channel.bins.astype(np.float64), floor)
             implot.plot_stairs(_CHANNELS[number], edges, heights, spec)
@@ -137,7 +139,7 @@ def _table(document: Histogram) -> None:
     for number, channel in enumerate(document.channels):
         if channel.nans or channel.infinities:
             text = f"{_CHANNELS[number]}: {channel.nans:,} NaN, {channel.infinities:,} infinite"
-            imgui.text_colored(theme.colour(theme.ALARM), text)
+            imgui.text_colored(theme.colour(theme.palette.alarm), text)
 
 
 def _ranges(histogram: Histogram, view: View) -> None:
@@ -173,14 +175,14 @@ def draw_values(report: PixelReport, look: Theme, area: Area) -> None:
     corner = ImVec2(mouse.x + (-away if right else away), mouse.y + (-away if low else away))
     imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(float(right), float(low)))
     flags = OVERLAY | imgui.WindowFlags_.no_inputs | imgui.WindowFlags_.no_nav
-    ground = theme.colour((0.11, 0.118, 0.126), 0.94)
+    ground = theme.colour(theme.palette.popup, 0.94)
 
     def value(text: str, ink: theme.Rgb) -> None:
         with look.font(look.code):
             imgui.text_colored(theme.colour(ink), text)
 
     with window("values", flags, ground=ground, rounding=8 * look.scale):
-        dim = theme.colour(theme.DIM)
+        dim = theme.colour(theme.palette.dim)
         rows = [
             (partial(imgui.text_colored, dim, name), partial(value, text, ink))
             for name, text, ink in lines_of(report)
@@ -191,18 +193,18 @@ def draw_values(report: PixelReport, look: Theme, area: Area) -> None:
 def lines_of(report: PixelReport) -> list[tuple[str, str, theme.Rgb]]:
     """Return the box's lines: a name, what there is, and the colour it is written in."""
     shade = "".join(f"{byte:02x}" for byte in report.picture)
-    lines = [("pixel", f"{report.pixel[0]}, {report.pixel[1]}  #{shade}", theme.INK)]
+    lines = [("pixel", f"{report.pixel[0]}, {report.pixel[1]}  #{shade}", theme.palette.ink)]
     if report.ground is not None:
-        lines += [(name, text, theme.INK) for name, text in _place(report.ground)]
+        lines += [(name, text, theme.palette.ink) for name, text in _place(report.ground)]
     if report.shown is not None:
-        lines.append(_line(report.shown, theme.ACCENT))
+        lines.append(_line(report.shown, theme.palette.accent))
     elif report.ground is None:
-        lines.append(("terrain", "none here", theme.DIM))
+        lines.append(("terrain", "none here", theme.palette.dim))
     shown = report.shown.name if report.shown else ""
-    lines += [_line(sample, theme.INK) for sample in report.samples if sample.name != shown]
+    lines += [_line(sample, theme.palette.ink) for sample in report.samples if sample.name != shown]
     if report.missing:
         listed = ", ".join(ref_name(name) for name in report.missing)
-        lines.append(("not in this picture", listed, theme.DIM))
+        lines.append(("not in this picture", listed, theme.palette.dim))
     return lines
 
 
@@ -225,5 +227,5 @@ def _line(sample: Sample, ink: theme.Rgb) -> tuple[str, str, theme.Rgb]:
     if sample.metres is not None and math.isfinite(sample.metres):
         text += f" = {sample.metres:.2f} m"
     text += f"   at {sample.texel[0]}, {sample.texel[1]}"
-    colour = ink if all(map(math.isfinite, sample.values)) else theme.ALARM
+    colour = ink if all(map(math.isfinite, sample.values)) else theme.palette.alarm
     return ref_name(sample.name), text, colour

@@ -119,7 +119,7 @@ def draw_timeline(undo: Undo, interface: Interface, look: Theme, area: Area) -> 
     flags = QUIET | imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move
     flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_bring_to_front_on_focus
     padding = {imgui.StyleVar_.window_padding: ImVec2(10 * look.scale, 8 * look.scale)}
-    with window("timeline", flags, ground=theme.colour(theme.GROUND, 0.82), sizes=padding):
+    with window("timeline", flags, ground=theme.colour(theme.palette.ground, 0.82), sizes=padding):
         _controls(undo, look)
         imgui.same_line(0, 10 * look.scale)
         _bar(sketch, undo, look)
@@ -137,7 +137,7 @@ def _controls(undo: Undo, look: Theme) -> None:
     if button("To 0"):
         undo.seek(0.0)
     imgui.same_line(0, gap)
-    with styled({imgui.Col_.button: theme.colour(theme.ACCENT, 0.5)} if clock.loop else {}):
+    with styled({imgui.Col_.button: theme.colour(theme.palette.accent, 0.5)} if clock.loop else {}):
         if button("Loop"):
             undo.toggle_loop()
     imgui.set_item_tooltip("Repeat a span of time (L); Shift+drag on the bar chooses from when to when")
@@ -188,7 +188,7 @@ def _bar(sketch: Sketch, undo: Undo, look: Theme) -> None:
     draw.add_rect_filled(
         ImVec2(corner.x, middle - 3 * scale),
         ImVec2(corner.x + wide, middle + 3 * scale),
-        theme.packed(theme.RAISED),
+        theme.packed(theme.palette.raised),
         3 * scale,
     )
     if clock.loop is not None:
@@ -196,8 +196,10 @@ def _bar(sketch: Sketch, undo: Undo, look: Theme) -> None:
             ImVec2(at(clock.loop[0]), middle - 6 * scale),
             ImVec2(at(clock.loop[1]), middle + 6 * scale),
         )
-        draw.add_rect_filled(low, top, theme.packed(theme.ACCENT, 0.35), 2 * scale)
+        draw.add_rect_filled(low, top, theme.packed(theme.palette.accent, 0.35), 2 * scale)
     for mark in marks:
-        draw.add_ngon_filled(ImVec2(at(mark), middle), 5 * scale, theme.packed(theme.WARM), 4)
+        draw.add_ngon_filled(ImVec2(at(mark), middle), 5 * scale, theme.packed(theme.palette.warm), 4)
     now = at(min(clock.time, span))
-    draw.add_line(ImVec2(now, corner.y), ImVec2(now, corner.y + high), theme.packed(theme.INK), 2 * scale)
+    draw.add_line(
+        ImVec2(now, corner.y), ImVec2(now, corner.y + high), theme.packed(theme.palette.ink), 2 * scale
+    )

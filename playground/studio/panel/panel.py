@@ -270,7 +270,7 @@ def draw_history(memory: PanelState, undo: Undo, look: Theme) -> None:
     for number, step in enumerate(history.steps, 1):
         text = fitting(step_label(step, name_of, written), wide - 20 * look.scale)
         done, latest = number <= history.done, number == history.done
-        with inked(theme.INK if done else theme.DIM):
+        with inked(theme.palette.ink if done else theme.palette.dim):
             if imgui.selectable(f"{text}##{number}", latest)[0]:
                 undo.go_to(number)
         if latest and imgui.is_window_appearing():

@@ -191,7 +191,7 @@ def _lock(path: str, locked: bool, look: Theme) -> bool:
     note = "randomising, presets, resets and reloads leave it"
     note = f"Locked: {note}. Click to unlock" if locked else f"Lock: {note}"
     clicked, hovered, middle = slot_button(f"lock {path}", note)
-    ink = theme.WARM if locked else theme.INK if hovered else theme.DIM
+    ink = theme.palette.warm if locked else theme.palette.ink if hovered else theme.palette.dim
     unit, draw = look.scale, imgui.get_window_draw_list()
     x, y = middle.x, middle.y
     body = ImVec2(x - 4 * unit, y - unit), ImVec2(x + 4 * unit, y + 5 * unit)
@@ -326,7 +326,7 @@ class _Drawing:
         right = high.x - slot() - 8 * look.scale
         position = ImVec2(right - size.x, (low.y + high.y - size.y) / 2)
         imgui.get_window_draw_list().add_text(
-            position, theme.packed(theme.ACCENT if ran else theme.DIM), text
+            position, theme.packed(theme.palette.accent if ran else theme.palette.dim), text
         )
         if imgui.is_item_hovered():
             lines = ["How often its kernels ran; green: for this very picture"]
@@ -363,7 +363,7 @@ class _Drawing:
                 imgui.set_next_item_open(True)
             flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.span_avail_width
             flags |= imgui.TreeNodeFlags_.allow_overlap | imgui.TreeNodeFlags_.no_tree_push_on_open
-            with inked(theme.DIM):
+            with inked(theme.palette.dim):
                 opened = imgui.tree_node_ex(f"{group.name}###{where} {group.name}", flags)
             self._reset(group.name, group.items)
             if opened:

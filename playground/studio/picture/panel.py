@@ -132,8 +132,8 @@ def draw_part_labels(sketch: Sketch, look: Theme, area: Area) -> None:
             continue
         room = min(room, _MAX_WIDTH * look.scale) - 2 * padding
         lines = [
-            (part.name, look.bold, theme.TEXT_SIZE, theme.INK),
-            (part.method, look.text, theme.SMALL, theme.DIM),
+            (part.name, look.bold, theme.TEXT_SIZE, theme.palette.ink),
+            (part.method, look.text, theme.SMALL, theme.palette.dim),
         ]
         sizes = []
         for text, font, size, _ in lines:
@@ -145,7 +145,7 @@ def draw_part_labels(sketch: Sketch, look: Theme, area: Area) -> None:
             ImVec2(left, y + margin),
             ImVec2(left + across + 2 * padding, y + margin + high + 2 * padding),
         )
-        draw.add_rect_filled(low, corner, theme.packed(theme.GROUND, 0.85), 6 * look.scale)
+        draw.add_rect_filled(low, corner, theme.packed(theme.palette.ground, 0.85), 6 * look.scale)
         top = low.y + padding
         for (text, font, size, ink), extent in zip(lines, sizes, strict=True):
             if text:

@@ -95,7 +95,7 @@ class ErrorsList:
 
     @property
     def _ink(self) -> theme.Rgb:
-        return theme.ALARM if self.problems.errors else theme.WARM
+        return theme.palette.alarm if self.problems.errors else theme.palette.warm
 
     def _window(self, name: str, area: Area, look: Theme, **sizes: ImVec2) -> AbstractContextManager[None]:
         """Draw a window in the lower left corner of an area, in the colour of their severity."""
@@ -118,7 +118,10 @@ class ErrorsList:
         problems, margin = self.problems, 14 * look.scale
         width, tallest = max(area[2] - 2 * margin, 120.0), max(area[3] * _MAX_HEIGHT, 120.0)
         imgui.set_next_window_size_constraints(ImVec2(width, 0), ImVec2(width, tallest))
-        with styled({imgui.Col_.text_link: theme.colour(theme.DIM)}), self._window("error", area, look):
+        with (
+            styled({imgui.Col_.text_link: theme.colour(theme.palette.dim)}),
+            self._window("error", area, look),
+        ):
             self._headline(look)
             room = tallest - imgui.get_cursor_pos_y() - imgui.get_style().window_padding.y
             imgui.set_next_window_size_constraints(ImVec2(0, 0), ImVec2(1e6, max(room, 40.0)))
@@ -191,7 +194,13 @@ class ErrorsList:
         imgui.begin_group()
         self._links(diagnostic, look)
         is_error = diagnostic.severity == "error"
-        _text("message", diagnostic.message, theme.INK if is_error else theme.WARM, look, wrap=True)
+        _text(
+            "message",
+            diagnostic.message,
+            theme.palette.ink if is_error else theme.palette.warm,
+            look,
+            wrap=True,
+        )
         lines = [] if again else problems.lines_around(diagnostic)
         if lines:
             _code(diagnostic, lines, look)
@@ -206,13 +215,13 @@ class ErrorsList:
         if current:
             low = ImVec2(top.x - 6 * look.scale, top.y)
             high = ImVec2(top.x - 3 * look.scale, imgui.get_item_rect_max().y)
-            imgui.get_window_draw_list().add_rect_filled(low, high, theme.packed(theme.ACCENT))
+            imgui.get_window_draw_list().add_rect_filled(low, high, theme.packed(theme.palette.accent))
 
     def _links(self, diagnostic: Diagnostic, look: Theme) -> None:
         """Draw the place, which opens the file, and the ways on from there."""
         if not diagnostic.file:
             return
-        with look.font(look.code), styled({imgui.Col_.text_link: theme.colour(theme.WARM)}):
+        with look.font(look.code), styled({imgui.Col_.text_link: theme.colour(theme.palette.warm)}):
             if imgui.text_link(f"{self._short(diagnostic.location)}##place"):
                 self.files.open_problem(diagnostic)
         if imgui.is_item_hovered():
@@ -252,8 +261,13 @@ def _code(diagnostic: Diagnostic, lines: list[tuple[int, str]], look: Theme) -> 
         low = imgui.get_cursor_screen_pos()
         low = ImVec2(low.x, low.y + wrong * line)
         high = ImVec2(low.x + imgui.get_content_region_avail().x, low.y + line)
-        imgui.get_window_draw_list().add_rect_filled(low, high, theme.packed((1.0, 1.0, 1.0), 0.07))
-        _text("code", "\n".join(rows), theme.DIM if diagnostic.severity != "error" else theme.INK, look)
+        imgui.get_window_draw_list().add_rect_filled(low, high, theme.packed(theme.palette.ink, 0.07))
+        _text(
+            "code",
+            "\n".join(rows),
+            theme.palette.dim if diagnostic.severity != "error" else theme.palette.ink,
+            look,
+        )
 
 
 def _text(label: str, text: str, rgb: theme.Rgb, look: Theme, *, wrap: bool = False) -> None:
@@ -261,7 +275,10 @@ def _text(label: str, text: str, rgb: theme.Rgb, look: Theme, *, wrap: bool = Fa
     wide = imgui.get_content_region_avail().x
     size = imgui.calc_text_size(text, False, wide - 2 * look.scale if wrap else -1.0)
     flags = imgui.InputTextFlags_.read_only | (imgui.InputTextFlags_.word_wrap if wrap else 0)
-    colours = {imgui.Col_.frame_bg: theme.colour(theme.GROUND, 0.0), imgui.Col_.text: theme.colour(rgb)}
+    colours = {
+        imgui.Col_.frame_bg: theme.colour(theme.palette.ground, 0.0),
+        imgui.Col_.text: theme.colour(rgb),
+    }
     var = imgui.StyleVar_
     with styled(colours, {var.frame_padding: ImVec2(0, 0), var.scrollbar_size: 4 * look.scale}):
         imgui.input_text_multiline(f"##{label}", text, ImVec2(wide, size.y + 2), flags)
@@ -302,7 +319,7 @@ def draw_not_finite(watch: FiniteWatch, session: Session, tracing: Tracing, look
     imgui.set_next_window_pos(ImVec2(area[0] + margin, area[1] + margin))
     widest = max(min(area[2] - 2 * margin, 460 * look.scale), 80.0)
     imgui.set_next_window_size_constraints(ImVec2(0, 0), ImVec2(widest, area[3]))
-    ground = theme.colour(theme.GROUND, 0.92)
+    ground = theme.colour(theme.palette.ground, 0.92)
     with window("not finite", OVERLAY, ground=ground, rounding=6 * look.scale):
         with wrapped(widest - 2 * imgui.get_style().window_padding.x):
             imgui.text_colored(theme.colour(_MAGENTA), summary(watch.non_finite))

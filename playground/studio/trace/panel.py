@@ -35,7 +35,7 @@ _CODE = 0.52  # fraction of the width that code takes first
 _SLIDER, _SPARK = 110.0, 96.0  # [units of scale 1] widths
 _CLICK = 4.0  # that the mouse may move during a click
 _GUTTER = 5  # letters left of the code: the line's number
-_COMMENT, _WORD = theme.DIM, (0.62, 0.76, 0.93)
+_COMMENT, _WORD = theme.palette.dim, (0.62, 0.76, 0.93)
 _WORDS = frozenset(
     "if else for while do switch case default break continue return discard struct const in out inout uniform"
     " void float int uint bool vec2 vec3 vec4 ivec2 ivec3 ivec4 uvec2 uvec3 uvec4 bvec2 bvec3 bvec4 mat2 mat3"
@@ -67,8 +67,8 @@ class TracePanel:
         flags = QUIET | imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_scrollbar
         flags |= imgui.WindowFlags_.no_focus_on_appearing
         ground = {
-            imgui.Col_.window_bg: theme.colour(theme.GROUND, 0.97),
-            imgui.Col_.title_bg_active: theme.colour(theme.RAISED),
+            imgui.Col_.window_bg: theme.colour(theme.palette.ground, 0.97),
+            imgui.Col_.title_bg_active: theme.colour(theme.palette.raised),
         }
         with styled(ground, {imgui.StyleVar_.window_rounding: 8 * scale}):
             visible, stays = imgui.begin(f"{title_of(tracing)}###trace", True, flags)
@@ -243,7 +243,7 @@ class TracePanel:
         if imgui.is_item_active() or imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
         end = ImVec2(x, top + imgui.get_window_height())
-        imgui.get_window_draw_list().add_line(ImVec2(x, top), end, theme.packed(theme.LINE))
+        imgui.get_window_draw_list().add_line(ImVec2(x, top), end, theme.packed(theme.palette.line))
 
     def _row(
         self, tracing: Tracing, view: TraceView, row: Row, grid: _Grid, colours: Sequence[_Piece], look: Theme
@@ -252,12 +252,12 @@ class TracePanel:
         left, edge = grid.corner.x, grid.corner.x + grid.code
         if row.number == tracing.line:
             far = ImVec2(grid.corner.x + grid.wide, top + grid.line)
-            draw.add_rect_filled(ImVec2(left, top), far, theme.packed(theme.FIELD))
+            draw.add_rect_filled(ImVec2(left, top), far, theme.packed(theme.palette.field))
         number = f"{row.number:>{_GUTTER - 1}}"
-        draw.add_text(ImVec2(left, top + look.scale), theme.packed(theme.DIM), number)
+        draw.add_text(ImVec2(left, top + look.scale), theme.packed(theme.palette.dim), number)
         if row.items:  # a line that gave something has a mark, whether or not its values are in sight
             middle = ImVec2(left + (_GUTTER - 0.5) * grid.letter, top + grid.line / 2)
-            draw.add_circle_filled(middle, 2 * look.scale, theme.packed(theme.ACCENT))
+            draw.add_circle_filled(middle, 2 * look.scale, theme.packed(theme.palette.accent))
         start = left + _GUTTER * grid.letter
         self._selected(tracing, row, start, top, grid, edge)
         draw.push_clip_rect(ImVec2(start, top), ImVec2(edge - 4 * look.scale, top + grid.line), True)
@@ -296,7 +296,7 @@ class TracePanel:
         if self.selection is not None and self.selection[0] == row.number:
             low = ImVec2(start + self.selection[1] * grid.letter, top)
             high = ImVec2(min(start + self.selection[2] * grid.letter, edge), top + grid.line)
-            imgui.get_window_draw_list().add_rect_filled(low, high, theme.packed(theme.ACCENT, 0.35))
+            imgui.get_window_draw_list().add_rect_filled(low, high, theme.packed(theme.palette.accent, 0.35))
 
     def _select(self, tracing: Tracing, row: Row, code: str, first: int, last: int) -> None:
         self.selection = row.number, first, last
@@ -376,19 +376,19 @@ class TracePanel:
         corner = imgui.get_cursor_screen_pos()
         imgui.invisible_button("##spark", size)
         draw, end = imgui.get_window_draw_list(), corner + size
-        draw.add_rect_filled(corner, end, theme.packed(theme.FIELD), 2 * look.scale)
+        draw.add_rect_filled(corner, end, theme.packed(theme.palette.field), 2 * look.scale)
         points = spark_points(head.series, (corner.x, corner.y, size.x, size.y))
         for one, other in pairwise(points):
             if one[2] and other[2]:
-                draw.add_line(ImVec2(*one[:2]), ImVec2(*other[:2]), theme.packed(theme.ACCENT), look.scale)
+                draw.add_line(ImVec2(*one[:2]), ImVec2(*other[:2]), theme.packed(theme.palette.accent), look.scale)
         for x, _, is_finite in points:
             if is_finite is False:  # a cross and not only a colour
                 _cross(draw, x, corner.y + size.y / 2, 3 * look.scale)
         with look.font(look.code, theme.SMALL):
             name = fitting(head.plotted, size.x - 4 * look.scale)
-            draw.add_text(corner + ImVec2(2 * look.scale, 0), theme.packed(theme.DIM, 0.9), name)
+            draw.add_text(corner + ImVec2(2 * look.scale, 0), theme.packed(theme.palette.dim, 0.9), name)
         x = points[min(head.chosen, len(points) - 1)][0] if points else corner.x
-        draw.add_line(ImVec2(x, corner.y), ImVec2(x, end.y), theme.packed(theme.INK, 0.8), look.scale)
+        draw.add_line(ImVec2(x, corner.y), ImVec2(x, end.y), theme.packed(theme.palette.ink, 0.8), look.scale)
         if imgui.is_item_hovered():
             at = round((imgui.get_io().mouse_pos.x - corner.x) / size.x * max(head.count - 1, 0))
             at = min(max(at, 0), head.count - 1)
@@ -434,7 +434,7 @@ class TracePanel:
             with look.font(look.text, theme.SMALL):
                 text = tracing.probe_message
                 room = imgui.get_content_region_avail().x
-                imgui.text_colored(theme.colour(theme.WARM), fitting(text.replace("\n", "  "), room))
+                imgui.text_colored(theme.colour(theme.palette.warm), fitting(text.replace("\n", "  "), room))
                 imgui.set_item_tooltip(text)
 
 
@@ -462,11 +462,11 @@ def state_of(tracing: Tracing) -> tuple[str, theme.Rgb]:
     """Return what is traced or why it is not, and the colour to write it in."""
     view = tracing.view
     if tracing.compiling:
-        return f"compiling {tracing.compiling} …", theme.WARM
+        return f"compiling {tracing.compiling} …", theme.palette.warm
     if tracing.message:
-        return tracing.message, theme.WARM
+        return tracing.message, theme.palette.warm
     if view is None:
-        return "a click on the picture pins a texel; Shift+click compares it with the one before", theme.DIM
+        return "a click on the picture pins a texel; Shift+click compares it with the one before", theme.palette.dim
     trace = view.trace
     parts = [f"{counted(len(trace.events), 'value')} of {counted(len(trace.calls), 'call')}"]
     if not trace.is_complete:
@@ -479,7 +479,7 @@ def state_of(tracing: Tracing) -> tuple[str, theme.Rgb]:
         parts.append("its result differs from the texel's: the driver rounds a recorded sum otherwise")
     if tracing.other() is not None:
         parts.append("both run alike" if view.difference is None else f"≠ {other_name(tracing)}")
-    return "   ".join(parts), theme.DIM
+    return "   ".join(parts), theme.palette.dim
 
 
 def other_name(tracing: Tracing) -> str:
@@ -541,8 +541,8 @@ def _colours_of(lines: tuple[str, ...]) -> tuple[tuple[_Piece, ...], ...]:
 
 def _pieces(line: str, inks: Sequence[tuple[int, int, theme.Rgb]]) -> list[_Piece]:
     pieces, at = [], 0
-    for start, end, ink in (*inks, (len(line), len(line), theme.INK)):
-        pieces += [(at, line[at:start], theme.INK), (start, line[start:end], ink)]
+    for start, end, ink in (*inks, (len(line), len(line), theme.palette.ink)):
+        pieces += [(at, line[at:start], theme.palette.ink), (start, line[start:end], ink)]
         at = max(at, end)
     return [piece for piece in pieces if piece[1].strip()]
 
@@ -559,23 +559,23 @@ def _item(item: Item, room: float, look: Theme) -> bool:
     if whole > room and room < 60 * look.scale:
         return False
     if name:
-        imgui.text_colored(theme.colour(theme.DIM), name)
+        imgui.text_colored(theme.colour(theme.palette.dim), name)
         imgui.same_line(0, 4 * look.scale)
     left = max(room - imgui.calc_text_size(f"{name} ").x - 8 * look.scale, 20.0)
-    ink = theme.INK if item.is_finite else theme.ALARM
+    ink = theme.palette.ink if item.is_finite else theme.palette.alarm
     imgui.text_colored(theme.colour(ink), fitting(value, left))
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
     imgui.set_item_tooltip(item.full + (f"\nin the other trace: {item.other}" if item.other else ""))
     gap = ImVec2(2 * look.scale, 0)
     draw = imgui.get_window_draw_list()
     if not item.is_finite:
-        draw.add_rect(low - gap, high + gap, theme.packed(theme.ALARM), 2 * look.scale)
+        draw.add_rect(low - gap, high + gap, theme.packed(theme.palette.alarm), 2 * look.scale)
     if item.other and (left := left - (high.x - low.x)) > 20 * look.scale:
         imgui.same_line(0, 4 * look.scale)
-        imgui.text_colored(theme.colour(theme.WARM), fitting(f"≠ {item.other}", left))
+        imgui.text_colored(theme.colour(theme.palette.warm), fitting(f"≠ {item.other}", left))
     if item.parts:
         end = ImVec2(imgui.get_item_rect_max().x, high.y)
-        draw.add_rect(low - gap, end + gap, theme.packed(theme.WARM), 2 * look.scale, 2 * look.scale)
+        draw.add_rect(low - gap, end + gap, theme.packed(theme.palette.warm), 2 * look.scale, 2 * look.scale)
     return True
 
 
@@ -585,7 +585,7 @@ def _rest(items: Sequence[Item], look: Theme) -> None:
 
 
 def _cross(draw: imgui.ImDrawList, x: float, y: float, half: float) -> None:
-    ink = theme.packed(theme.ALARM)
+    ink = theme.packed(theme.palette.alarm)
     draw.add_line(ImVec2(x - half, y - half), ImVec2(x + half, y + half), ink, 2)
     draw.add_line(ImVec2(x - half, y + half), ImVec2(x + half, y - half), ink, 2)
 
@@ -615,7 +615,7 @@ def draw_mark(tracing: Tracing, look: Theme, area: Area) -> None:
         return
     x, y = area[0] + mark[0] * area[2], area[1] + (1 - mark[1]) * area[3]
     draw, near, far = imgui.get_background_draw_list(), 3 * look.scale, 10 * look.scale
-    for ink, thick in ((theme.packed((0.0, 0.0, 0.0), 0.8), 4.0), (theme.packed(theme.WARM), 2.0)):
+    for ink, thick in ((theme.packed((0.0, 0.0, 0.0), 0.8), 4.0), (theme.packed(theme.palette.warm), 2.0)):
         for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
             start, end = ImVec2(x + near * dx, y + near * dy), ImVec2(x + far * dx, y + far * dy)
             draw.add_line(start, end, ink, thick * look.scale)
