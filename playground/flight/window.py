@@ -29,7 +29,7 @@ from playground.flight.record import Header, Moment, Record, Recorder
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.studio.draw import ctrl_held, letters, plate
-from playground.studio.interface import remembered_size
+from playground.studio.interface import remembered_preferences
 from playground.studio.keys import pressed_sign
 from playground.studio.picture.full_screen import Painter
 from playground.studio.reload.dependencies import watched
@@ -132,8 +132,8 @@ class Fly:
         self.replay = replay
         self.saves = saves
         self.painter = Painter(window.ctx)
-        self.size = remembered_size()
-        window.zoom = self.size.size
+        self.preferences = remembered_preferences()
+        window.zoom = self.preferences.size
         self.instruments = Instruments(recording=recorder is not None, replaying=replay is not None)
         self.paused = False
         self.draws = 0
@@ -293,10 +293,10 @@ class Fly:
     def _resize(self, key: str) -> None:
         """Draw text larger, smaller or as large as the screen says, and remember it for every window."""
         if key == "0":
-            self.size.choose(1.0)
+            self.preferences.choose(size=1.0)
         elif key:
-            self.size.step(1 if key == "+" else -1)
-        self.window.zoom = self.size.size
+            self.preferences.step(1 if key == "+" else -1)
+        self.window.zoom = self.preferences.size
 
     def _leave(self) -> None:
         """Close the help; else pause. Esc never quits: in flight Ctrl and Q are controls."""

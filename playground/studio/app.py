@@ -41,9 +41,10 @@ from playground.studio.drops import Drops, opened_from
 from playground.studio.edits.autosave import QUIET, Autosave, memory_of
 from playground.studio.edits.memory import Remembered
 from playground.studio.guard import Guard
-from playground.studio.interface import WindowControls, remembered_size
+from playground.studio.interface import WindowControls, remembered_preferences
 from playground.studio.keyframes.panel import height_of_timeline
 from playground.studio.keys import PictureKeys, act_on_keys, draw_keymap
+from playground.studio.language import choose_language
 from playground.studio.mouse import PictureMouse
 from playground.studio.overlay import (
     checking_text,
@@ -55,6 +56,7 @@ from playground.studio.overlay import (
     draw_waiting,
 )
 from playground.studio.panel.panel import Panel
+from playground.studio.panes import PaneLayout
 from playground.studio.picture.disk_caching import SessionCaching
 from playground.studio.picture.full_screen import Painter
 from playground.studio.picture.panel import draw_part_labels
@@ -167,6 +169,16 @@ def title_of(path: Path) -> str:
     return f"{name} – terrain shader playground"
 
 
+def _pixels_of(area: Area, window: Window) -> tuple[int, int, int, int]:
+    """Return what an area covers of the screen: x, y from below, width, height [pixels]."""
+    (wide, high), density = window.pixels, window.density
+    left = min(round(area[0] * density), wide - 1)
+    top = min(round(area[1] * density), high - 1)
+    across = max(min(round(area[2] * density), wide - left), 1)
+    down = max(min(round(area[3] * density), high - top), 1)
+    return left, high - top - down, across, down
+
+
 def _checked(path: Path, values: Mapping[str, object], dialect: str) -> dict[str, Value]:
     """Return values as their parameters take them; raise ``ParameterError`` for one that does not fit.
 
@@ -208,8 +220,17 @@ class Live:
             is_full=lambda: self.place.full,
             sign_held=lambda: window.sign_held,
         )
-        opener, size = Opener(wake), remembered_size()
-        self.bench = Workbench(session, controls, opener=opener, size=size, wake=wake, trace_sandbox=tracer)
+        preferences = remembered_preferences()
+        self.bench = Workbench(
+            session,
+            controls,
+            opener=Opener(wake),
+            preferences=preferences,
+            wake=wake,
+            trace_sandbox=tracer,
+        )
+        choose_language(preferences.language)
+        self.panes = PaneLayout(self.bench.panes)
         self.drops = Drops(self.bench.actions)
         self.guard = Guard(self.bench.notices.say)
         self.terminal = TerminalErrors(report)
@@ -303,7 +324,7 @@ class Live:
         """Return how long nothing needs to be done [s]."""
         if self.session.is_listening or (self.session.animated and self.session.clock.playing):
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
-        if self._settling > 0 or self.remotes.waits:
+        if self._settling > 0 or self.remotes.waits or self.window.keys.waits:
             return 0.0
         if self.session.catch_up.behind is not None:
             return 0.0
@@ -343,7 +364,8 @@ class Live:
         look = window.theme
         window.set_title(title_of(self.session.drafts.shown_path))
         guard.run("taking in what was dropped", lambda: self.drops.take(self.place.dropped()), None)
-        window.zoom = bench.interface.size.size
+        window.zoom = bench.interface.preferences.size
+        look.choose(theme.LIGHT if bench.interface.preferences.is_light else theme.DARK)
         window.begin()
         bench.inspection.begin()
         full = next((a.full_screen for a in self.additions if a.full_screen is not None), None)
@@ -355,22 +377,25 @@ class Live:
             left += guard.draw(f"{addition.name}'s panel", addition.draw_panel, 0.0)
         if bench.interface.panel_shown:
             left += guard.draw("the panel", lambda: self.panel.draw(bench, look, left), 0.0)
-        room = imgui.get_main_viewport().size
-        area: Area = (left, 0.0, max(room.x - left, 1.0), room.y)
+        places = self.panes.place(left, bench.tabs, look)
+        area = places.picture
         quit_window = bench.window.quit
         guard.draw(
             "the editor", lambda: draw_code(bench.files, bench.problems, quit_window, look, area), None
         )
+        guard.draw("the strip", lambda: self.panes.draw_strip(places, bench.tabs, look), None)
         guard.draw("what a key asks for", self._act_on_keys, None)
         guard.draw("the mouse over the picture", lambda: self._act(area), None)
-        wide, high = window.pixels
-        skipped = min(round(left * window.density), wide - 1)
+        pixels = _pixels_of(area, window)
         guard.run("listening", self.session.listen, None)
-        picture = guard.run("the picture", lambda: self._picture((wide - skipped, high)), None)
+        if window.keys.waits:
+            self._draw_over(self.session.picture.texture, area)
+            window.skip()
+            return
+        picture = guard.run("the picture", lambda: self._picture(pixels[2:]), None)
         guard.run("taking in the picture", self._take_in, None)
         self._draw_over(picture, area)
-        room_left = (skipped, 0, wide - skipped, high)
-        guard.run("showing the picture", lambda: self._show(picture, room_left), None)
+        guard.run("showing the picture", lambda: self._show(picture, pixels), None)
         window.end()
         guard.run("what follows a picture", self._follow_up, None)
 

@@ -15,7 +15,7 @@ from playground.studio.code.open_files import OpenFiles
 from playground.studio.edits.autosave import Autosave
 from playground.studio.edits.undo import Undo
 from playground.studio.inspect.inspection import Inspection
-from playground.studio.interface import Interface, InterfaceSize, WindowControls
+from playground.studio.interface import Interface, Panes, Preferences, Tab, WindowControls
 from playground.studio.keyframes.keyframe_edits import KeyframeEdits
 from playground.studio.notices import Notices
 from playground.studio.paint.painting import Painting
@@ -40,7 +40,7 @@ class Workbench:
         folder: Path | None = None,
         now: Callable[[], float] = time.perf_counter,
         opener: Opener | None = None,
-        size: InterfaceSize | None = None,
+        preferences: Preferences | None = None,
         wake: Callable[[], None] | None = None,
         trace_sandbox: TraceSandbox | None = None,
     ) -> None:
@@ -57,7 +57,9 @@ class Workbench:
         self.actions = Actions(session, self.notices, self.undo, self.file, folder)
         self.keyframes = KeyframeEdits(session, self.notices, self.undo, self.file)
         self.files = OpenFiles(self.notices, opener or Opener())
-        self.interface = Interface(size=size or InterfaceSize())
+        self.interface = Interface(preferences=preferences or Preferences())
+        self.panes = Panes(self.interface.preferences)
+        self.tabs: list[Tab] = []  # of the strip below the picture
         self.additions: list[Addition] = []  # of the rooms that can be removed
         self.controllers = Controllers(session, self.notices)
 

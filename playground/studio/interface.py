@@ -1,7 +1,8 @@
-"""What of the interface is shown: panel, key map, search; how large it is drawn; a field about to open.
+"""What of the interface is shown: panel, key map, search; how it looks; a field about to open.
 
-The size is remembered in one small JSON file in the user's state folder, the same for every sketch.
-Where it cannot be read or written, the size is that of the screen, and nothing else is lost.
+Size, colours, language and layout are remembered in one small JSON file in the user's state folder, the same
+for every sketch. Where it cannot be read or written they are those of the screen and the system, and nothing
+else is lost.
 """
 
 from __future__ import annotations
@@ -11,12 +12,16 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from playground.errors import PlaygroundError
 from playground.files import read_regular, write_file
 from playground.json_text import read_json
 from playground.paths import state_folder
 from playground.studio.notices import Notices
+
+if TYPE_CHECKING:
+    from playground.studio.theme import Theme
 
 SIZES = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
 """What the keys go through; 1 is as large as the screen says."""
@@ -26,41 +31,110 @@ _MAX_BYTES = 2**16  # [bytes]
 
 
 @dataclass
-class InterfaceSize:
-    """The current size, and where it is remembered."""
+class Preferences:
+    """How the interface looks, and where that is remembered."""
 
     size: float = 1.0
+    is_light: bool = False
+    language: str = ""  # "": the system's
+    panes: dict[str, float] = field(default_factory=dict)  # what ``Panes`` remembers, by name
+    used_keys: tuple[str, ...] = ()  # of those that the window hints at
     file: Path | None = None  # None: nowhere
 
     def step(self, by: int) -> None:
         """Go to the next larger size, or with -1 to the next smaller one; at the ends it stays."""
         nearest = min(range(len(SIZES)), key=lambda at: abs(SIZES[at] - self.size))
-        self.choose(SIZES[min(max(nearest + by, 0), len(SIZES) - 1)])
+        self.choose(size=SIZES[min(max(nearest + by, 0), len(SIZES) - 1)])
 
-    def choose(self, size: float) -> None:
-        """Take a size, and remember it where that can be done."""
-        if size == self.size:
+    def choose(self, **changes: object) -> None:
+        """Set some of the fields, and remember them where that can be done."""
+        if all(getattr(self, name) == value for name, value in changes.items()):
             return
-        self.size = size
+        for name, value in changes.items():
+            setattr(self, name, value)
         if self.file is None:
             return
-        text = json.dumps({"format": FORMAT, "size": size})
+        remembered = {name: getattr(self, name) for name in _REMEMBERED}
         with contextlib.suppress(OSError, PlaygroundError):
             self.file.parent.mkdir(parents=True, exist_ok=True)
-            write_file(self.file, text)
+            write_file(self.file, json.dumps({"format": FORMAT, **remembered}))
 
 
-def remembered_size(folder: Path | None = None) -> InterfaceSize:
-    """Return the size that was chosen last, in the user's state folder unless another is named."""
+_REMEMBERED = ("size", "is_light", "language", "panes", "used_keys")
+
+
+def remembered_preferences(folder: Path | None = None) -> Preferences:
+    """Return what was chosen last, in the user's state folder unless another is named.
+
+    A field that the file does not have, or has with another type, is as delivered.
+    """
     file = (folder or state_folder()) / "interface.json"
+    preferences = Preferences(file=file)
     try:
         if file.stat().st_size > _MAX_BYTES:
-            return InterfaceSize(file=file)
+            return preferences
         table = read_json(read_regular(file).decode())
-        size = float(table["size"]) if table["format"] == FORMAT else 1.0
-    except (OSError, ValueError, TypeError, KeyError, OverflowError):
-        return InterfaceSize(file=file)
-    return InterfaceSize(size if size in SIZES else 1.0, file)
+        if not isinstance(table, dict) or table.get("format") != FORMAT:
+            return preferences
+    except (OSError, ValueError, PlaygroundError):
+        return preferences
+    if table.get("size") in SIZES:
+        preferences.size = float(table["size"])
+    for name in ("is_light", "language"):
+        if isinstance(table.get(name), type(getattr(preferences, name))):
+            setattr(preferences, name, table[name])
+    panes = table.get("panes")
+    if isinstance(panes, dict):
+        preferences.panes = {name: float(v) for name, v in panes.items() if isinstance(v, int | float)}
+    used = table.get("used_keys")
+    if isinstance(used, list) and all(isinstance(key, str) for key in used):
+        preferences.used_keys = tuple(used)
+    return preferences
+
+
+@dataclass(frozen=True)
+class Tab:
+    """One tab of the strip; ``draw`` draws it in the current window."""
+
+    name: str  # by which it is opened and remembered
+    title: str  # in English; ``tr`` translates it
+    draw: Callable[[Theme], None]
+    badge: Callable[[], str] = lambda: ""  # behind its title, as "(1)"
+
+
+@dataclass
+class Panes:
+    """The code pane and the strip below the picture: whether they are open, and how large."""
+
+    preferences: Preferences
+    selects: str = ""  # the tab that the strip is to show
+    has_code: bool = False  # there is something to show in the code pane
+
+    def is_open(self, name: str, *, narrow: bool) -> bool:
+        """Return whether "code" or "strip" is open; as delivered they are, but in a narrow window."""
+        chosen = self.preferences.panes.get(name)
+        return not narrow if chosen is None else bool(chosen)
+
+    def show_code(self, shown: bool = True) -> None:
+        """Open the code pane, or close it."""
+        self.remember("code", float(shown))
+
+    def show_strip(self, tab: str = "", shown: bool = True) -> None:
+        """Open the strip at a tab, or close it."""
+        self.remember("strip", float(shown))
+        self.selects = tab or self.selects
+
+    def as_delivered(self) -> None:
+        """Forget what was opened, closed and dragged."""
+        self.preferences.choose(panes={})
+
+    def fraction(self, name: str, otherwise: float) -> float:
+        """Return the part of the window that a pane takes."""
+        return self.preferences.panes.get(name, otherwise)
+
+    def remember(self, name: str, value: float) -> None:
+        """Remember a choice."""
+        self.preferences.choose(panes={**self.preferences.panes, name: value})
 
 
 @dataclass
@@ -79,7 +153,7 @@ class Interface:
     keymap_shown: bool = False
     searching: bool = False  # the panel is to give its search the keys
     reveal: str = ""  # the pass that the panel is to scroll to
-    size: InterfaceSize = field(default_factory=InterfaceSize)
+    preferences: Preferences = field(default_factory=Preferences)
     ahead: TypedAhead = field(default_factory=TypedAhead)
 
     def show_pass(self, name: str) -> None:
@@ -99,15 +173,15 @@ class Interface:
         self.keymap_shown = not self.keymap_shown
 
 
-def resize(size: InterfaceSize, by: int, notices: Notices) -> None:
+def resize(preferences: Preferences, by: int, notices: Notices) -> None:
     """Draw text and panels larger, smaller, or with 0 as large as the screen says; say how large."""
     if by:
-        size.step(by)
+        preferences.step(by)
     else:
-        size.choose(1.0)
+        preferences.choose(size=1.0)
     what = "text and panels at"
     notices.drop(what)
-    notices.say(f"{what} {size.size:.0%}")
+    notices.say(f"{what} {preferences.size:.0%}")
 
 
 @dataclass

@@ -197,7 +197,7 @@ _SIGN_KEYS: dict[imgui.Key, str] = {
 
 
 def _resize(bench: Workbench, by: int) -> None:
-    resize(bench.interface.size, by, bench.notices)
+    resize(bench.interface.preferences, by, bench.notices)
 
 
 def _step(bench: Workbench) -> None:
@@ -279,7 +279,9 @@ def draw_keymap(interface: Interface, look: Theme) -> None:
     flags = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move
     flags |= imgui.WindowFlags_.no_resize | imgui.WindowFlags_.always_auto_resize
     cell = {imgui.StyleVar_.cell_padding: ImVec2(4 * look.scale, 0)}  # a small window has room for all
-    with window("keys", flags, ground=theme.colour(theme.palette.popup, 0.98), rounding=8 * look.scale, sizes=cell):
+    with window(
+        "keys", flags, ground=theme.colour(theme.palette.popup, 0.98), rounding=8 * look.scale, sizes=cell
+    ):
         with look.font(look.bold, theme.TEXT_SIZE + 2):
             imgui.text_unformatted("Keys")
         names = [(", ".join(names), meaning) for meaning, names in keys_by_meaning().items()]

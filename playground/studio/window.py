@@ -26,6 +26,7 @@ import glfw
 from playground.engine.context import abandon, adopt_context
 from playground.engine.driver_advice import advice
 from playground.errors import ContextError
+from playground.studio.key_queue import KeyQueue
 from playground.studio.theme import Theme
 
 if TYPE_CHECKING:
@@ -128,6 +129,7 @@ class Window:
             raise _refused("glfw.init failed")
         self._title = title
         self._clicks = Clicks()
+        self.keys = KeyQueue()
         self._screen_size = (0, 0)
         self._screen: moderngl.Framebuffer | None = None
         self.zoom = 1.0  # of text and margins, over the screen's own scale
@@ -228,6 +230,7 @@ class Window:
         imgui.backends.glfw_new_frame()
         io, longest = imgui.get_io(), self._clicks.double_click_time()
         io.mouse_double_click_time, io.mouse_single_click_delay = longest, longest + 0.25
+        self.keys.feed()
         imgui.new_frame()
         if imgui.is_mouse_clicked(0):
             self._clicks.handled()
@@ -238,6 +241,10 @@ class Window:
         self.screen.use()
         imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
         glfw.swap_buffers(self._handle)
+
+    def skip(self) -> None:
+        """End a frame that is not shown, since more keys wait for frames of their own."""
+        imgui.end_frame()
 
     def close(self) -> None:
         """Close the window and end GLFW."""
@@ -286,6 +293,7 @@ class Window:
         glfw.set_mouse_button_callback(self._handle, pressed)  # imgui's own callback hands on to it
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330 core")
+        self.keys.listen(self._handle)
 
     def _press(self, handle: Any, button: int, action: int, _: int) -> None:
         if action == glfw.RELEASE:

@@ -245,7 +245,7 @@ def test_lines_that_hang_on_a_name(names: list[str], lines: list[int]) -> None:
         ("float f() { for (int i = 0; i < 3; ++i) { float i = 2.0; } return 1.0; }", ["i"]),
         ("struct S { float e; }; float f(S s) { float e; return s.e; }", ["e"]),
         (
-            "float f(\nfloat a) {\n#ifdef X\n if (a > 1.0) {\n#else\n if (a > 2.0) {\n#endif\n } return 1.; }",
+            "float f(\nfloat a) {\n#ifdef X\n if (a > 1.) {\n#else\n if (a > 2.) {\n#endif\n } return 1.; }",
             [],
         ),
     ],

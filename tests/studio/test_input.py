@@ -14,7 +14,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.studio.addition import Addition, Layer
 from playground.studio.code.panel import draw_code
 from playground.studio.guard import Guard
-from playground.studio.interface import SIZES, InterfaceSize, remembered_size
+from playground.studio.interface import SIZES, Preferences, remembered_preferences
 from playground.studio.keys import all_keys, open_layers
 from playground.studio.session import Session
 from playground.studio.window import DOUBLE_CLICK_TIME, Clicks, after_events, before_release
@@ -42,23 +42,23 @@ FILES = {"terrain.glsl": TERRAIN, "sketch.toml": "format = 1\nsize = 17\n" + map
 )
 def test_ctrl_plus_and_minus_change_the_size(bare: Bare, keys: tuple[imgui.Key, ...], size: float) -> None:
     bare.key(imgui.Key.mod_ctrl, *keys)
-    assert bare.bench.interface.size.size == size
+    assert bare.bench.interface.preferences.size == size
     bare.key(imgui.Key.mod_ctrl, imgui.Key._0)
-    assert bare.bench.interface.size.size == 1.0
+    assert bare.bench.interface.preferences.size == 1.0
     bare.key(*keys)
-    assert bare.bench.interface.size.size == 1.0, "without Ctrl they are no such keys"
+    assert bare.bench.interface.preferences.size == 1.0, "without Ctrl they are no such keys"
 
 
 def test_a_keyboard_whose_plus_is_elsewhere_has_it_there(bare: Bare) -> None:
     bare.bench.window.sign_held = lambda: "+"
     bare.key(imgui.Key.mod_ctrl, imgui.Key.right_bracket)  # as on a German keyboard
-    assert bare.bench.interface.size.size == 1.1
+    assert bare.bench.interface.preferences.size == 1.1
     bare.key(imgui.Key.mod_ctrl, imgui.Key.minus)  # as on a Swedish one
-    assert bare.bench.interface.size.size == 1.25
+    assert bare.bench.interface.preferences.size == 1.25
 
 
 def test_it_ends_at_the_smallest_and_at_the_largest() -> None:
-    size = InterfaceSize()
+    size = Preferences()
     for _ in range(20):
         size.step(1)
     assert size.size == SIZES[-1]
@@ -68,9 +68,9 @@ def test_it_ends_at_the_smallest_and_at_the_largest() -> None:
 
 
 def test_interface_size_persists_and_invalid_file_uses_default(tmp_path: Path) -> None:
-    assert remembered_size(tmp_path).size == 1.0
-    remembered_size(tmp_path).step(1)
-    assert remembered_size(tmp_path).size == 1.1
+    assert remembered_preferences(tmp_path).size == 1.0
+    remembered_preferences(tmp_path).step(1)
+    assert remembered_preferences(tmp_path).size == 1.1
     for text in (
         "",
         "{",
@@ -80,7 +80,7 @@ def test_interface_size_persists_and_invalid_file_uses_default(tmp_path: Path) -
         '{"format": 1}',
     ):
         (tmp_path / "interface.json").write_text(text, encoding="utf-8")
-        assert remembered_size(tmp_path).size == 1.0, text
+        assert remembered_preferences(tmp_path).size == 1.0, text
 
 
 # ── keys ──────────────────────────────────────────────────────────────────────

@@ -13,7 +13,8 @@ import playground
 ROOT = Path(playground.__file__).resolve().parent
 STUDIO = ROOT / "studio"
 SCREEN = {"imgui_bundle", "glfw"}
-WINDOW = {"app", "draw", "guard", "keys", "mouse", "overlay", "status", "theme", "widgets", "window"}
+WINDOW = {"app", "draw", "guard", "key_queue", "keys", "mouse", "overlay", "panes", "status", "theme"}
+WINDOW |= {"widgets", "window"}
 """Modules at the top of the studio that may draw."""
 
 

@@ -253,9 +253,9 @@ class Page:
             filled = self.reader.numbers.fill(words, self.lesson)
             self.prose.draw(filled, self.look, size=size, ink=ink)
 
-    def plain(self, words: str, rgb: theme.Rgb = theme.palette.ink) -> None:
+    def plain(self, words: str, rgb: theme.Rgb | None = None) -> None:
         """Draw a text that is no Markdown, as a compiler's words, wrapped."""
-        with self.look.font(self.look.code, theme.SMALL), inked(rgb):
+        with self.look.font(self.look.code, theme.SMALL), inked(rgb or theme.palette.ink):
             imgui.text_wrapped(written(words))
 
     def behind(self, name: str, what: str, words: Markdown, label: str = "") -> None:
@@ -271,13 +271,13 @@ class Page:
         if self.button(f"{self.say('hide')}##{what}"):
             shown.discard(key)
 
-    def label(self, text: str, rgb: theme.Rgb = theme.palette.accent) -> None:
+    def label(self, text: str, rgb: theme.Rgb | None = None) -> None:
         """Write a block's label."""
         with self.look.font(self.look.bold, theme.SMALL):
-            imgui.text_colored(theme.colour(rgb), text)
+            imgui.text_colored(theme.colour(rgb or theme.palette.accent), text)
 
     @contextmanager
-    def frame(self, name: str, rgb: theme.Rgb = theme.palette.line) -> Iterator[None]:
+    def frame(self, name: str, rgb: theme.Rgb | None = None) -> Iterator[None]:
         """Draw the block inside with a bar on its left."""
         scale = self.look.scale
         with pushed_id(name):
@@ -289,7 +289,9 @@ class Page:
             imgui.unindent(12 * scale)
             corner = ImVec2(top.x + 3 * scale, imgui.get_item_rect_max().y)
             draw = imgui.get_window_draw_list()
-            draw.add_rect_filled(ImVec2(top.x, top.y), corner, theme.packed(rgb), 1.5 * scale)
+            draw.add_rect_filled(
+                ImVec2(top.x, top.y), corner, theme.packed(rgb or theme.palette.line), 1.5 * scale
+            )
 
     def button(self, text: str, note: str = "", *, on: bool = False, enabled: bool = True) -> bool:
         """Draw a button; ``on``: it is in effect already. Return whether it is pressed."""

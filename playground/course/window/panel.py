@@ -65,8 +65,6 @@ from playground.studio.panel.passes_panel import Rows
 from playground.studio.theme import Theme
 from playground.studio.widgets import slide_whole
 
-_ON, _OFF = theme.palette.accent, theme.palette.line
-
 
 def draw_figure(block: Figure, page: Page) -> None:
     """Draw a figure: its caption, and what may be dragged."""
@@ -206,7 +204,7 @@ def _named(block: Slider, at: int) -> str:
 
 
 def _bar(page: Page, block: Figure | Steps | Slider | Compare) -> theme.Rgb:
-    return _ON if page.reader.is_on(block) else _OFF
+    return theme.palette.accent if page.reader.is_on(block) else theme.palette.line
 
 
 def draw_code_block(block: Code, page: Page) -> None:

@@ -35,7 +35,6 @@ _CODE = 0.52  # fraction of the width that code takes first
 _SLIDER, _SPARK = 110.0, 96.0  # [units of scale 1] widths
 _CLICK = 4.0  # that the mouse may move during a click
 _GUTTER = 5  # letters left of the code: the line's number
-_COMMENT, _WORD = theme.palette.dim, (0.62, 0.76, 0.93)
 _WORDS = frozenset(
     "if else for while do switch case default break continue return discard struct const in out inout uniform"
     " void float int uint bool vec2 vec3 vec4 ivec2 ivec3 ivec4 uvec2 uvec3 uvec4 bvec2 bvec3 bvec4 mat2 mat3"
@@ -380,7 +379,9 @@ class TracePanel:
         points = spark_points(head.series, (corner.x, corner.y, size.x, size.y))
         for one, other in pairwise(points):
             if one[2] and other[2]:
-                draw.add_line(ImVec2(*one[:2]), ImVec2(*other[:2]), theme.packed(theme.palette.accent), look.scale)
+                draw.add_line(
+                    ImVec2(*one[:2]), ImVec2(*other[:2]), theme.packed(theme.palette.accent), look.scale
+                )
         for x, _, is_finite in points:
             if is_finite is False:  # a cross and not only a colour
                 _cross(draw, x, corner.y + size.y / 2, 3 * look.scale)
@@ -466,7 +467,10 @@ def state_of(tracing: Tracing) -> tuple[str, theme.Rgb]:
     if tracing.message:
         return tracing.message, theme.palette.warm
     if view is None:
-        return "a click on the picture pins a texel; Shift+click compares it with the one before", theme.palette.dim
+        return (
+            "a click on the picture pins a texel; Shift+click compares it with the one before",
+            theme.palette.dim,
+        )
     trace = view.trace
     parts = [f"{counted(len(trace.events), 'value')} of {counted(len(trace.calls), 'call')}"]
     if not trace.is_complete:
@@ -529,9 +533,9 @@ def _colours_of(lines: tuple[str, ...]) -> tuple[tuple[_Piece, ...], ...]:
     shown = [line.expandtabs(4) for line in lines]
     starts = [0, *accumulate(len(line) + 1 for line in shown)]
     tokens, comments = tokenize("\n".join(shown))
-    spans = [(c.start, c.end, _COMMENT) for c in comments]
-    spans += [(t.start, t.end, _COMMENT) for t in tokens if t.kind == "directive"]
-    spans += [(t.start, t.end, _WORD) for t in tokens if t.text in _WORDS]
+    spans = [(c.start, c.end, theme.palette.dim) for c in comments]
+    spans += [(t.start, t.end, theme.palette.dim) for t in tokens if t.kind == "directive"]
+    spans += [(t.start, t.end, theme.palette.accent) for t in tokens if t.text in _WORDS]
     inks: list[list[tuple[int, int, theme.Rgb]]] = [[] for _ in lines]
     for start, end, ink in sorted(spans):
         for at in range(bisect_right(starts, start) - 1, min(bisect_right(starts, end - 1), len(lines))):

@@ -1,0 +1,42 @@
+"""The window's words in the language that is chosen: ``tr("Undo")``.
+
+The English words stand in the code; ``french.toml`` has the others by them. Where a translation is missing
+the English words are shown, and a test names them. Words with numbers in them are templates, as
+``tr("reloaded in {ms} ms", ms=12)``.
+"""
+
+from __future__ import annotations
+
+import locale
+import tomllib
+from functools import cache
+from pathlib import Path
+
+LANGUAGES = {"en": "English", "fr": "Français"}
+
+_chosen = "en"
+
+
+def language() -> str:
+    """Return the code of the language in use."""
+    return _chosen
+
+
+def choose_language(code: str) -> str:
+    """Use a language from now on, "" for the system's; return its code. An unknown one is English."""
+    global _chosen
+    code = code or (locale.getlocale()[0] or "en").lower()[:2]
+    _chosen = code if code in LANGUAGES else "en"
+    return _chosen
+
+
+def tr(text: str, **values: object) -> str:
+    """Return words of the window in the language that is in use, with values in the place of their names."""
+    words = _translations(_chosen).get(text, text) if _chosen != "en" else text
+    return words.format(**values) if values else words
+
+
+@cache
+def _translations(code: str) -> dict[str, str]:
+    names = {"fr": "french.toml"}
+    return tomllib.loads((Path(__file__).parent / names[code]).read_text("utf-8"))

@@ -1,0 +1,87 @@
+"""How the window looks: contrast of both palettes, places of its panes, what is remembered."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+from playground.shader.colours import srgb_to_linear
+from playground.studio import theme
+from playground.studio.interface import Panes, Preferences, Tab, remembered_preferences
+from playground.studio.panes import NARROW, PaneLayout
+
+from .panel_desk import OpenBare
+from .screen import HILLS
+
+FILES = {"sketch.toml": HILLS, "terrain.glsl": "float kernel(vec2 p) { return 0.5; }\n"}
+WRITES = ("ink", "dim", "accent", "warm", "alarm")
+GROUNDS = ("ground", "popup", "field")
+
+
+def luminance(rgb: theme.Rgb) -> float:
+    """Return the relative luminance of WCAG 2.2."""
+    return sum(w * float(srgb_to_linear(part)) for w, part in zip((0.2126, 0.7152, 0.0722), rgb, strict=True))
+
+
+@pytest.mark.parametrize("palette", [theme.DARK, theme.LIGHT], ids=["dark", "light"])
+def test_text_has_a_contrast_of_4_5(palette: theme.Palette) -> None:
+    """WCAG 2.2, criterion 1.4.3: (L1 + 0.05) / (L2 + 0.05)."""
+    low = {
+        (ink, ground): round(contrast, 2)
+        for ink in WRITES
+        for ground in GROUNDS
+        if (contrast := contrast_of(getattr(palette, ink), getattr(palette, ground))) < 4.5
+    }
+    assert low == {}
+    assert contrast_of(palette.ink, palette.raised) >= 4.5, "what buttons say"
+
+
+def contrast_of(one: theme.Rgb, other: theme.Rgb) -> float:
+    lighter, darker = sorted((luminance(one), luminance(other)), reverse=True)
+    return (lighter + 0.05) / (darker + 0.05)
+
+
+def test_palettes_differ_in_every_colour() -> None:
+    for field in fields(theme.Palette):
+        assert getattr(theme.DARK, field.name) != getattr(theme.LIGHT, field.name), field.name
+
+
+def test_what_is_chosen_is_remembered(tmp_path: Path) -> None:
+    remembered_preferences(tmp_path).choose(is_light=True, language="fr", panes={"code": 0.0})
+    again = remembered_preferences(tmp_path)
+    assert (again.is_light, again.language, again.panes) == (True, "fr", {"code": 0.0})
+    file = tmp_path / "interface.json"
+    file.write_text(json.dumps({"format": 1, "size": 1.25, "is_light": 3, "panes": [], "used_keys": [1]}))
+    again = remembered_preferences(tmp_path)
+    assert (again.size, again.is_light, again.panes, again.used_keys) == (1.25, False, {}, ())
+
+
+TABS = [Tab("one", "One", lambda look: None)]
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (900, 640)], ids=["wide", "narrow"])
+def test_panes_share_the_window(open_bare: OpenBare, folder: Path, size: tuple[int, int]) -> None:
+    bare = open_bare(folder, size=size)
+    preferences = Preferences(panes={"code": 1.0, "strip": 1.0})
+    panes = Panes(preferences, has_code=True)
+    layout = PaneLayout(panes)
+    bare.run_frames(1)
+    places = layout.place(300.0, TABS, bare.theme)
+    assert places.code is not None and places.strip is not None
+    wide, high = size[0] - 300.0, float(size[1])
+    assert places.picture[3] + places.strip[3] == high and places.strip[2] == wide
+    if size[0] >= NARROW:
+        assert places.picture[2] + places.code[2] == wide
+        assert places.code[0] == 300.0 + places.picture[2]
+    else:
+        assert places.code == places.picture
+    panes.show_code(False)
+    panes.show_strip(shown=False)
+    places = layout.place(300.0, TABS, bare.theme)
+    assert places.picture == (300.0, 0.0, wide, high) and places.code is None and places.strip is None
+    panes.as_delivered()
+    for name in ("code", "strip"):
+        assert panes.is_open(name, narrow=False) and not panes.is_open(name, narrow=True)
