@@ -360,7 +360,8 @@ class _Writer:
             kind = parameter.type.name
             if parameter.name and "out" not in parameter.type.qualifiers and "sampler" not in kind:
                 arrays = [*parameter.type.arrays, *parameter.arrays]
-                texts.append(self._record("argument", parameter.name, kind, arrays, scope, parameter))
+                at = _Token(parameter.at)
+                texts.append(self._record("argument", parameter.name, kind, arrays, scope, at))
         self._put_after(body.first, " ".join(texts), innermost=True)
         for statement in body.statements:
             self._statement(statement, scope, True)

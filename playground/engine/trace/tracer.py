@@ -194,6 +194,8 @@ class Tracer:
         ref = plan.flat.ref(path, plan.sketch.name)
         step, loops = self._step(plan, ref)
         texel = _checked_texel(step, texel)
+        if not isinstance(limit, Integral) or isinstance(limit, bool) or limit < 1:
+            raise ParameterError(f"limit {limit!r}: expected a whole number of values from 1")
         renderer = self._renderer
         with renderer.supposing(plan), renderer.borrowed():
             try:
