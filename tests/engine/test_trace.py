@@ -285,7 +285,7 @@ def test_a_shader_of_another_tool_is_traced_in_its_own_lines(any_engine, tmp_pat
 
 def test_a_trace_changes_nothing_that_is_drawn_afterwards(any_engine, folder):
     folder.kernels(h=COUNT.replace("a:r32f", "h:r32f"), two=TWO)
-    sketch = folder.sketch(passes(h="./h", two="./two") + map_of("h"))
+    sketch = folder.sketch(passes(h="./h", two="./two") + map_of("two:b"))
     before = any_engine.render(sketch, size=(64, 36))
     record, runs, bound = any_engine.record, dict(any_engine.runs), any_engine.ctx.fbo
     programs, results = any_engine.runner.programs.compiled, dict(any_engine.record.results)
