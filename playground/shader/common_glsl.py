@@ -172,6 +172,7 @@ class _Rewriter:
     def text(self) -> str:
         """Return the text with all edits."""
         self._blocks()
+        self._locations()
         self._sampler_rows()
         self._own_names()
         for node in walk(*self._tree.declarations):
@@ -242,6 +243,18 @@ class _Rewriter:
                 self._replace(node.first, node.last, members.get((symbol.name, node.name), node.name))
             elif symbol is not None and symbol.kind == "variable" and ("", symbol.name) in members:
                 self._replace(base.first, base.last, members["", symbol.name])
+
+    def _locations(self) -> None:
+        """Take the locations of varyings away: ES matches them by their names."""
+        way = "out" if any(token.text == "gl_Position" for token in self._tokens) else "in"
+        for node in self._tree.declarations:
+            holder = node.type if isinstance(node, Declaration) else node
+            if not isinstance(holder, Type | InterfaceBlock) or way not in holder.qualifiers or holder.at < 0:
+                continue
+            texts = [self._tokens[at].text for at in range(node.first, holder.at)]
+            if "layout" in texts:
+                at = node.first + texts.index("layout")
+                self._replace(at, node.first + texts.index(")") + 1, "")
 
     def _sampler_rows(self) -> None:
         """Write textures of one dimension as rows of such of two."""
