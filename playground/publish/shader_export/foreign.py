@@ -6,7 +6,6 @@ What its own tool gives it becomes a global variable, set from what the new one 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -17,18 +16,11 @@ from playground.publish.shader_export.texts import Host, PassText, Sampled, vari
 from playground.shader.declarations import uniforms
 from playground.shader.reserved_names import NEUTRAL, SIZES
 from playground.shader.source import Line
+from playground.shader.syntax.nodes import Declaration as Declared
+from playground.shader.syntax.nodes import InterfaceBlock, Precision, Type
+from playground.shader.syntax.parser import parse
+from playground.shader.syntax.tokens import as_written
 from playground.sketch.model import ForeignShader, Kernel
-
-_LEFT_OUT = re.compile(r"\s*(?:#\s*(?:version|extension)\b|precision\s)")
-_OUT = re.compile(r"\s*(?:layout\s*\([^)]*\)\s*)?out\s+(?:highp\s+|mediump\s+|lowp\s+)?vec([34])\s+(\w+)\s*;")
-_IN = re.compile(
-    r"\s*(?:layout\s*\([^)]*\)\s*)?(?:(?:flat|smooth|noperspective|centroid)\s+)*in\s+\w+\s+[^;()]*;"
-)
-_PRELUDE_UNIFORM = re.compile(r"uniform\s+(\w+)\s+(\w+)\s*(\[\d+\])?\s*;")
-_VERTEX_OUT = re.compile(
-    r"(?:layout\s*\([^)]*\)\s*)?(?:(?:flat|smooth|noperspective|centroid)\s+)*out\s+(\w+)\s+(\w+)\s*;"
-)
-_PRECISION = re.compile(r"\s*#\s*if(?:def\s+GL_ES|\s+defined\s*\(?\s*GL_ES\s*\)?)\s*$")
 
 
 def foreign_text(pass_: ShaderPass, host: Host, expressions: Mapping[str, Callable[[str], str]]) -> PassText:
@@ -60,13 +52,13 @@ def foreign_text(pass_: ShaderPass, host: Host, expressions: Mapping[str, Callab
         value += own
         statements += setting
     for declaration, setting_text in foreign.vertex if foreign and isinstance(foreign.vertex, tuple) else ():
-        match = _VERTEX_OUT.fullmatch(declaration)
-        if not match:
+        varying = parse(declaration).declarations[0]
+        if not isinstance(varying, Declared) or varying.type.arrays or varying.names[0].arrays:
             message = (
                 f"pass '{pass_.step.path}' takes '{declaration}' of a vertex shader, which others have not"
             )
             raise SketchError(message)
-        value.append(variable_of(match[1], match[2]))
+        value.append(variable_of(varying.type.name, varying.names[0].name))
         share = f"(({host.pixel}) / vec2({host.size}))"
         text = setting_text.replace("k_share", share).replace("k_place", f"({share} * 2.0 - 1.0)")
         statements.append(text)
@@ -88,29 +80,49 @@ def foreign_text(pass_: ShaderPass, host: Host, expressions: Mapping[str, Callab
 
 def _own_lines(kernel: Kernel) -> tuple[list[Line], str]:
     """Return a text's lines without what a fragment shader of its own needs, and what it writes."""
-    output = "k_frag_color"
-    lines: list[Line] = []
+    codes: list[str] = []
     in_precision = False
     for line in kernel.source.lines:
-        code = line.code
-        if _PRECISION.match(code):
-            in_precision = True
-        if in_precision or _LEFT_OUT.match(code) or _IN.match(code):
-            in_precision = in_precision and "endif" not in code
-            code = ""
-        elif match := _OUT.match(code):
-            output = match[2] if match[1] == "4" else f"vec4({match[2]}, 1.0)"
-            code = f"vec{match[1]} {match[2]};"
-        lines.append(line if code == line.code else replace(line, code=code, comment=""))
+        _, word, *words = [*_words(line.code), "", ""] if "#" in line.code else ("", "")
+        names = {*words}.difference(("defined", "(", ")", ""))
+        in_precision |= word in ("if", "ifdef") and names == {"GL_ES"}
+        codes.append("" if in_precision or word in ("version", "extension") else line.code)
+        in_precision &= word != "endif"
+    text, output = "\n".join(codes), "k_frag_color"
+    whole = parse(text, all_branches=True)
+    left_out: list[tuple[int, int]] = []
+    for tree in (whole, *whole.branches):
+        for node in tree.declarations:
+            kind = node.type if isinstance(node, Declared) else node
+            qualifiers = kind.qualifiers if isinstance(kind, Type | InterfaceBlock) else ()
+            start, end = tree.span(node)
+            if isinstance(node, Precision) or "in" in qualifiers:
+                left_out.append((start, end))
+            elif isinstance(node, Declared) and "out" in qualifiers and node.type.name in ("vec3", "vec4"):
+                name = node.names[0].name
+                output = name if node.type.name == "vec4" else f"vec4({name}, 1.0)"
+                left_out.append((start, tree.tokens[node.type.at].start))
+    for start, end in sorted(left_out, reverse=True):
+        text = text[:start] + "\n" * text.count("\n", start, end) + text[end:]
+    codes = [code if code.strip() else "" for code in text.split("\n")]
+    lines = [
+        line if line.code == code else replace(line, code=code, comment="")
+        for line, code in zip(kernel.source.lines, codes, strict=True)
+    ]
     return lines, output
+
+
+def _words(code: str) -> list[str]:
+    return [token.text for token in as_written(code)]
 
 
 def _prelude(line: str) -> Declaration | None:
     """Return what a line before the text declares for all of it, but for what is given otherwise."""
-    if line.startswith("#define"):
-        name = re.split(r"[\s(]", line.partition(" ")[2], maxsplit=1)[0]
-        return declaration_of(line, name, is_macro=True)
-    return declaration_of("vec4 k_frag_color;", "k_frag_color") if _OUT.match(line) else None
+    words = _words(line)
+    if words[:2] == ["#", "define"]:
+        return declaration_of(line, words[2], is_macro=True)
+    is_output = "out" in words and words[-2:] == ["k_frag_color", ";"]
+    return declaration_of("vec4 k_frag_color;", "k_frag_color") if is_output else None
 
 
 def _without_twins(declarations: list[Declaration]) -> list[Declaration]:
@@ -119,14 +131,11 @@ def _without_twins(declarations: list[Declaration]) -> list[Declaration]:
 
 def _kinds(kernel: Kernel) -> dict[str, tuple[str, str]]:
     """Return the type of each uniform, and the brackets of an array."""
-    kinds = {
-        match[2]: (match[1], match[3] or "")
-        for line in (kernel.prelude if isinstance(kernel, ForeignShader) else ())
-        if (match := _PRELUDE_UNIFORM.match(line))
-    }
-    for name, declared in uniforms(kernel.source.code).items():
-        brackets = re.search(r"\[\s*\d+\s*\]", declared.written) if declared.is_array else None
-        kinds[name] = declared.type, brackets.group() if brackets else ""
+    prelude = "\n".join(kernel.prelude) if isinstance(kernel, ForeignShader) else ""
+    kinds = {}
+    for code in (prelude, kernel.source.code):
+        for name, declared in uniforms(code).items():
+            kinds[name] = declared.type, "".join(_words(declared.written)[1:4]) if declared.is_array else ""
     return kinds
 
 
