@@ -53,6 +53,7 @@ from playground.shader.reserved_names import (
     WIRED,
 )
 from playground.shader.source import Line, Origin, SourceText, read_source_and_origin
+from playground.shader.syntax.tokens import as_written, directive, place_of, tokenize
 from playground.shader.widgets import SCALARS, VECTORS, WIDGETS, Value, Widget
 
 _ARGUMENT = re.compile(r'\s*(?:(\w+)\s*=\s*)?("(?:[^"\\]|\\.)*"|[^,()"]+)\s*(,|$)')
@@ -160,13 +161,8 @@ def _closing(text: str, position: int) -> int:
 FALLBACKS = ("white", "black", "zero")
 """What an input reads where nothing is wired: "zero" is black with alpha 0, and a loop's first iteration
 reads zeros of the size of what is fed back."""
-_UNIFORM = re.compile(
-    r"^\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*(?:=([^;]*))?;"
-)
-_LAYOUT = re.compile(r"^\s*layout\s*\([^)]*\)(?=\s*uniform\b)")
-_SAMPLERS = re.compile(r"\buniform\s+(?:(?:lowp|mediump|highp)\s+)?([iu]?sampler\w+)\s+([^;]*);")
-_WORD_UNIFORM = re.compile(r"\buniform\b")
-_IMAGE = re.compile(r"\b[iu]?image[123]D\b")
+_PRECISIONS = frozenset({"lowp", "mediump", "highp"})
+_IMAGES = frozenset(f"{kind}image{n}D" for kind in ("", "i", "u") for n in (1, 2, 3))
 _FLOAT = re.compile(r"[-+]?(?:\d+\.\d*|\.\d+|\d+(?=[eEfF]))(?:[eE][-+]?\d+)?[fF]?")
 _WHOLE = re.compile(r"([-+]?)(?:0[xX]([0-9a-fA-F]+)|(\d+))[uU]?")
 _VECTOR = re.compile(r"([iu]?vec[234])\s*\((.*)\)", re.DOTALL)
@@ -197,12 +193,12 @@ def read_uniforms(
     for index, line in enumerate(source.lines):
         if "uniform" not in line.code:  # most lines: a text with its includes has a thousand
             continue
-        match = _UNIFORM.match(_LAYOUT.sub("", line.code) if plain else line.code)
+        declared = _declared(line.code, plain=plain)
         if not plain:
-            _check_declaration(line, match)
-        if not match:
+            _check_declaration(line, is_declared=declared is not None)
+        if declared is None:
             continue
-        glsl_type, name, array, initial = match.groups()
+        glsl_type, name, array, initial = declared
         feeds = plain and glsl_type == "sampler2D" and line.comment.startswith("!")
         if name in skip or (plain and not feeds and (array or glsl_type not in _TYPES)):
             continue
@@ -245,17 +241,19 @@ def unfed_samplers(source: SourceText) -> tuple[Diagnostic, ...]:
     fed = {p.name for p in read_uniforms(source, plain=True)[0] if p.type == "sampler2D"}
     diagnostics: list[Diagnostic] = []
     for line in source.lines:
-        for match in _SAMPLERS.finditer(line.code):
-            kind, names = match.groups()
-            for item in re.finditer(r"([A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?(?:,|$)", names):
-                name, column = item.group(1), match.start(2) + item.start() + 1
-                example = f'uniform sampler2D {name};  //! file("picture.png")'
+        kind, before = "", ""
+        for token in tokenize(line.code)[0] if "sampler" in line.code else ():
+            if before == "uniform" and "sampler" in token.text:
+                kind = token.text
+            elif kind and before in (kind, ",") and token.text not in fed:
+                example = f'uniform sampler2D {token.text};  //! file("picture.png")'
                 more = f"an image file does: {example}"
                 if kind != "sampler2D":
                     more = "only a sampler2D may be fed"
-                if name not in fed:
-                    message = f"nothing feeds '{name}', so it reads black; {more}"
-                    diagnostics.append(line.diagnostic(message, column, "warning"))
+                message = f"nothing feeds '{token.text}', so it reads black; {more}"
+                diagnostics.append(line.diagnostic(message, token.start + 1, "warning"))
+            kind = "" if token.text == ";" else kind
+            before = before if token.text in _PRECISIONS else token.text
     return tuple(dict.fromkeys(diagnostics))
 
 
@@ -274,8 +272,7 @@ def check_name(name: str, line: Line, what: str) -> None:
         message = f"'{name}' is a word of GLSL itself; name the {what} something else"
     else:
         return
-    match = re.search(rf"\b{re.escape(name)}\b", line.code)
-    raise line.error(message, match.start() + 1 if match else 0)
+    raise line.error(message, place_of(line.code, name) + 1)
 
 
 def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
@@ -294,9 +291,33 @@ def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
     raise line.error(f"{wrong}; an annotation makes it a parameter, as //! point for a vec2", column)
 
 
-def _check_declaration(line: Line, match: re.Match[str] | None) -> None:
-    count = len(_WORD_UNIFORM.findall(line.code))
-    if line.code.lstrip().startswith("#") or _IMAGE.search(line.code) or count == bool(match):
+def _declared(code: str, *, plain: bool) -> tuple[str, str, str, str | None] | None:
+    """Return type, name, array and initial value of the uniform that a line declares; None for none.
+
+    Of a ``plain`` shader it may have a layout.
+    """
+    tokens = tokenize(code)[0]
+    texts = [*(token.text for token in tokens), *[""] * 4]
+    at = texts.index(")") + 1 if plain and texts[:2] == ["layout", "("] and ")" in texts else 0
+    if texts[at] != "uniform":
+        return None
+    at += 2 if texts[at + 1] in _PRECISIONS else 1
+    kind, name = texts[at : at + 2]
+    at += 2
+    array, initial = "", None
+    if texts[at] == "[" and "]" in texts[at:]:
+        first, at = at, texts.index("]", at) + 1
+        array = code[tokens[first].start : tokens[at - 1].end]
+    if texts[at] == "=" and ";" in texts[at:]:
+        first, at = at, texts.index(";", at)
+        initial = code[tokens[first].end : tokens[at].start]
+    is_whole = texts[at] == ";" and kind.isidentifier() and name.isidentifier()
+    return (kind, name, array, initial) if is_whole else None
+
+
+def _check_declaration(line: Line, *, is_declared: bool) -> None:
+    texts = [token.text for token in tokenize(line.code)[0]]
+    if texts.count("uniform") == is_declared or not _IMAGES.isdisjoint(texts):
         return
     raise line.error(
         "a uniform is declared on one line of its own: uniform TYPE NAME = LITERAL;  //! annotation"
@@ -565,12 +586,6 @@ def read_follows(
     return Follows(words[0], words[1], choices.index(words[2]))
 
 
-_PRAGMA = re.compile(r"#\s*pragma\s+(\w+)\s*(.*)", re.DOTALL)
-_OTHER_PRAGMA = re.compile(r"\s*#\s*pragma\s+(\w+)\s*\(")
-_DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)")
-_UNIFORM_STATEMENT = re.compile(r"uniform\b[^;]*;$")
-_VERSION = re.compile(r"^\s*#\s*version\b")
-_MAIN = re.compile(r"\bvoid\s+main\s*\(")
 _OWN_NAME = re.compile(rf"^\S+(?:{'|'.join(map(re.escape, SHADERS))})\s*(?:--|—|–|:)\s*")
 _MAX_TITLE = 72
 _IMAGE_DECLARATION = re.compile(
@@ -590,7 +605,7 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     """
     outermost = [line for line in source.lines if not line.chain]
     lines = [line for line in outermost if line.pragma]
-    versions = [line for line in outermost if _VERSION.match(line.code)]
+    versions = [line for line in outermost if directive(line.code)[0] == "version"]
     if versions and not lines:
         return _plain_shader(name, source, versions[0])
     _refuse_misspelt(outermost)
@@ -603,10 +618,9 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     if len(lines) > 1:
         raise lines[1].error("a second #pragma; a file is one kernel, one source or one draw")
     line = lines[0]
-    match = _PRAGMA.match(line.pragma)
-    assert match is not None  # or source.py would not have taken it for a pragma
-    kind = PRAGMAS[match.group(1)]
-    texts = _texts(kind, match.group(2), line)
+    word, options = directive(f"#{directive(line.pragma)[1]}")
+    kind = PRAGMAS[word]
+    texts = _texts(kind, options, line)
     _refuse_redefined(source)
     parameters, inputs = read_uniforms(source)
     texts = _with_names_replaced(kind, texts, parameters, line)
@@ -649,7 +663,7 @@ def _values(kind: type[Kernel], texts: Mapping[str, str], scope: Scope, line: Li
 def title_of(source: SourceText) -> str:
     """Return the sentence that a file begins with, without its own name, as a heading."""
     for line in source.lines:
-        if line.chain or line.pragma or _VERSION.match(line.code):
+        if line.chain or line.pragma or directive(line.code)[0] == "version":
             continue
         if line.code.strip() or line.comment.startswith("!"):
             break
@@ -670,7 +684,7 @@ def _titled(text: str) -> str:
 
 def _plain_shader(name: str, source: SourceText, version: Line) -> Kernel:
     is_compute = source.path.endswith(".comp") or "local_size_x" in source.names
-    if not _MAIN.search(source.code):
+    if source.line_naming("main", called=True) is None:
         raise version.error("a shader with its own #version needs its own main()")
     usual = {n for names in PLAIN_UNIFORMS.values() for n in names}
     parameters, _ = read_uniforms(source, plain=True, skip=usual)
@@ -684,8 +698,10 @@ def _plain_shader(name: str, source: SourceText, version: Line) -> Kernel:
     formats = [w.strip() for w in image.group(1).split(",") if w.strip() in FORMATS]
     if not formats:
         raise version.error(f"the image {image.group(2)} needs a format; there are: {', '.join(FORMATS)}")
-    sizes = [re.search(rf"local_size_{axis}\s*=\s*(\d{{1,5}})\b", source.code) for axis in "xy"]
-    local = (int(sizes[0].group(1)) if sizes[0] else 1, int(sizes[1].group(1)) if sizes[1] else 1)
+    texts = [token.text for token in tokenize(source.code)[0]]
+    sizes = {name: size for name, sign, size in zip(texts, texts[1:], texts[2:], strict=False) if sign == "="}
+    given = [sizes.get(f"local_size_{axis}", "1") for axis in "xy"]
+    local = int(given[0]) if given[0].isdecimal() else 1, int(given[1]) if given[1].isdecimal() else 1
     if min(local) < 1:
         raise version.error("local_size_x and local_size_y should be 1 or more")
     return PlainCompute(name, source, (Output("frame", formats[0]),), parameters, title=title, local=local)
@@ -766,26 +782,29 @@ def _outputs(text: str, line: Line) -> tuple[Output, ...]:
 
 def _refuse_misspelt(lines: list[Line]) -> None:
     for line in lines:
-        match = _OTHER_PRAGMA.match(line.code)
-        hint = nearest(match.group(1), PRAGMAS) if match else ""
-        if match and "did you mean" in hint:
-            raise line.error(f"no #pragma '{match.group(1)}'{hint}")
+        word, rest = directive(line.code)
+        word, options = directive(f"#{rest}") if word == "pragma" else ("", "")
+        hint = nearest(word, PRAGMAS) if options.startswith("(") else ""
+        if "did you mean" in hint:
+            raise line.error(f"no #pragma '{word}'{hint}")
 
 
 def _refuse_redefined(source: SourceText) -> None:
     if "define" not in source.names:
         return
     for line in source.lines:
-        match = _DEFINE.match(line.code) if "define" in line.code else None
-        if match and is_given(match.group(1)):
-            check_name(match.group(1), line, "macro")
+        word, rest = directive(line.code) if "define" in line.code else ("", "")
+        name = directive(f"#{rest}")[0] if word == "define" else ""
+        if is_given(name):
+            check_name(name, line, "macro")
 
 
 def _refuse_code(source: SourceText) -> None:
     """Refuse code in a source's file: no driver is given it, so that a mistake in it would never show."""
     for line in source.lines:
         code = line.code.strip()
-        if code and not code.startswith("#") and not _UNIFORM_STATEMENT.match(code):
+        is_uniform = code.split(maxsplit=1)[:1] == ["uniform"] and code.find(";") == len(code) - 1
+        if code and not code.startswith("#") and not is_uniform:
             message = "a source's file has parameters only, and nothing runs this code; take it out"
             raise line.error(message, len(line.code) - len(line.code.lstrip()) + 1)
 
@@ -794,14 +813,12 @@ def _refuse_driver_bound(source: SourceText) -> None:
     if not any(name in DRIVER_BOUND or name.startswith("gl_") for name in source.names):
         return
     for line in source.lines:
-        for match in re.finditer(r"[A-Za-z_]\w*", line.code):
-            word = match.group()
+        for token in as_written(line.code):
+            word = token.text
             if word in DRIVER_BOUND:
-                raise line.error(f"a kernel may not use '{word}': {DRIVER_BOUND[word]}", match.start() + 1)
+                raise line.error(f"a kernel may not use '{word}': {DRIVER_BOUND[word]}", token.start + 1)
             if word.startswith("gl_"):
-                raise line.error(
-                    f"a kernel may not use '{word}': its texel is an argument", match.start() + 1
-                )
+                raise line.error(f"a kernel may not use '{word}': its texel is an argument", token.start + 1)
 
 
 # ── parsed kernels, cached ───────────────────────────────────────────────────

@@ -81,6 +81,23 @@ def is_named(line: str, names: Collection[str], *, called: bool = False) -> bool
     )
 
 
+def directive(line: str) -> tuple[str, str]:
+    """Return the word of the directive that a line is, and what follows it; ("", "") for none."""
+    code = line.lstrip()
+    if not code.startswith("#"):
+        return "", ""
+    code = code[1:].lstrip()
+    end = next((i for i, letter in enumerate(code) if not (letter.isalnum() or letter == "_")), len(code))
+    return code[:end], code[end:].strip()
+
+
+def place_of(line: str, name: str) -> int:
+    """Return where a line first names something, or -1."""
+    if name not in line:
+        return -1
+    return next((token.start for token in as_written(line) if token.text == name), -1)
+
+
 def with_edits(text: str, edits: Mapping[tuple[int, int], str]) -> str:
     """Return a text with what stands for some spans, none within another, in their place."""
     parts, end = list[str](), 0
