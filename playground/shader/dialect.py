@@ -6,7 +6,6 @@ that; else it is ``Dialects`` itself, which knows our own kernels and plain shad
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Mapping
 from functools import cache
 from pathlib import Path
@@ -14,19 +13,18 @@ from pathlib import Path
 from playground.errors import Diagnostic, ParameterError, nearest
 from playground.rooms import modules
 from playground.shader.kernel import ForeignShader, Graph, Technique
+from playground.shader.source import is_own_pragma
+from playground.shader.syntax.tokens import directive, is_named
 
 OWN = "own"
 
 Read = Callable[[str, Path, Path], Technique]
 """Return the technique that ``use`` names: see ``Techniques.read``."""
 
-_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
-_PLAIN = re.compile(r"^[ \t]*#[ \t]*version\b.*\bmain\s*\(", re.MULTILINE | re.DOTALL)
-
 
 def has_own_pragma(code: str) -> bool:
     """Return whether code without comments has a pragma of our own kernels."""
-    return _PRAGMA.search(code) is not None
+    return any(is_own_pragma(line) for line in code.split("\n") if "pragma" in line)
 
 
 class Dialects:
@@ -46,7 +44,10 @@ class Dialects:
         from playground.shader.preprocessor import code_of
 
         code = code_of(text)
-        return OWN if has_own_pragma(code) or _PLAIN.search(code) else ""
+        lines = code.split("\n")
+        has_version = any(directive(line)[0] == "version" for line in lines if "#" in line)
+        is_plain = has_version and any(is_named(line, ("main",), called=True) for line in lines)
+        return OWN if has_own_pragma(code) or is_plain else ""
 
     def ending(self, name: str) -> str:
         """Return the ending of a new file for a text of a dialect."""

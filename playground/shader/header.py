@@ -316,6 +316,8 @@ def _declared(code: str, *, plain: bool) -> tuple[str, str, str, str | None] | N
 
 
 def _check_declaration(line: Line, *, is_declared: bool) -> None:
+    if is_declared and line.code.count("uniform") == 1:
+        return
     texts = [token.text for token in tokenize(line.code)[0]]
     if texts.count("uniform") == is_declared or not _IMAGES.isdisjoint(texts):
         return
@@ -793,10 +795,11 @@ def _refuse_redefined(source: SourceText) -> None:
     if "define" not in source.names:
         return
     for line in source.lines:
-        word, rest = directive(line.code) if "define" in line.code else ("", "")
-        name = directive(f"#{rest}")[0] if word == "define" else ""
-        if is_given(name):
-            check_name(name, line, "macro")
+        if "define" in line.code:
+            word, rest = directive(line.code)
+            name = directive(f"#{rest}")[0]
+            if word == "define" and is_given(name):
+                check_name(name, line, "macro")
 
 
 def _refuse_code(source: SourceText) -> None:

@@ -37,10 +37,9 @@ from playground.files import NotRegularError, irregularity, read_regular
 from playground.memo import TEXTS, PickledByFields
 from playground.paths import GLSL, shown
 from playground.shader.libraries import how_to_name, libraries, library_around
-from playground.shader.syntax.tokens import is_named
+from playground.shader.syntax.tokens import directive, is_named
 
 _DEFINE = re.compile(r"\s*#\s*define\s+(\w+)(\(|\s+(\w+)\s*$)?")
-_DIRECTIVE = re.compile(r"\s*#")
 _NAME = re.compile(r"\b([A-Za-z_]\w*)\s*(\(?)")
 _BRACKET = re.compile(r"[()]")
 _MAX_CALL_LINES = 1_000  # that one call may span: an unclosed one must not swallow the file
@@ -59,7 +58,7 @@ def with_calls_joined(codes: Sequence[str]) -> list[str]:
             name, bracket, meaning = define.groups()
             if bracket == "(" or meaning in macros:
                 macros.add(name)
-        elif macros and not _DIRECTIVE.match(code):
+        elif macros and not code.lstrip().startswith("#"):
             index = _join(lines, index, macros)
         index += 1
     return lines
@@ -74,7 +73,7 @@ def _join(codes: list[str], index: int, macros: set[str]) -> int:
     taken, end = joined, index  # as far as calls are whole
     while (is_open := _is_open(joined, macros)) != "no":
         last += 1
-        if last >= len(codes) or last - index > _MAX_CALL_LINES or _DIRECTIVE.match(codes[last]):
+        if last >= len(codes) or last - index > _MAX_CALL_LINES or codes[last].lstrip().startswith("#"):
             break
         code = codes[last].strip()
         if is_open == "maybe" and code and not code.startswith("("):
@@ -111,8 +110,7 @@ def _is_open(code: str, macros: Collection[str]) -> str:
 _log = logging.getLogger(__name__)
 
 _INCLUDE = re.compile(r'\s*#\s*(?:pragma\s+)?include\b\s*(?:"([^"]*)"|<([^>]*)>)?[\s;]*(.*)', re.DOTALL)
-_OWN_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|source|draw|compute)\b")
-_LINE = re.compile(r"\s*#\s*line\b")
+_OWN_PRAGMAS = frozenset({"kernel", "source", "draw", "compute"})
 _LIBRARY = re.compile(r"([A-Za-z_][\w.-]*)/(.+)")
 _MARK = re.compile(r'"(?:[^"\\]|\\.)*(?:"|\Z)|//|/\*')
 _NOT_TAB = re.compile(r"[^\t]")
@@ -483,8 +481,8 @@ def _split(text: str) -> tuple[_Split, ...]:
         include, pragma, left_out = None, "", False
         if "#" in code:
             include = _INCLUDE.match(code)
-            pragma = code.strip() if _OWN_PRAGMA.match(code) else ""
-            left_out = bool(_LINE.match(code))
+            pragma = code.strip() if is_own_pragma(code) else ""
+            left_out = directive(code)[0] == "line"
         if include or pragma or left_out:
             code = ""
         elif not (code.isascii() and code.isprintable()):
@@ -492,6 +490,12 @@ def _split(text: str) -> tuple[_Split, ...]:
         parts.append(_Split(code, comment, include, pragma, left_out, count))
         index += count
     return tuple(parts)
+
+
+def is_own_pragma(line: str) -> bool:
+    """Return whether a line of code is a pragma of our own kernels."""
+    word, rest = directive(line)
+    return word == "pragma" and directive(f"#{rest}")[0] in _OWN_PRAGMAS
 
 
 def _joined(lines: list[str], index: int) -> tuple[str, int]:

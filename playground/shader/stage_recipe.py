@@ -10,12 +10,12 @@ import re
 from dataclasses import dataclass
 
 from playground.shader.source import Line, SourceText
+from playground.shader.syntax.tokens import directive
 
 SIGNATURE = r"\b(\w+)\s+{name}\s*\(([^)]*)\)\s*\{{"
 """A pattern of the head of a function's definition: its type, its arguments."""
 
 VERSION_NUMBER = re.compile(r"#\s*version\s+(\d{1,9})\d*\s*(\w*)")
-_VERSION = re.compile(r"\s*#\s*version\b")
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,8 @@ class Recipe:
 
 def version_line(source: SourceText) -> Line | None:
     """Return the line of a text that says its version; None for what has none."""
-    return next((line for line in source.lines if _VERSION.match(line.code)), None)
+    lines = (line for line in source.lines if "#" in line.code)
+    return next((line for line in lines if directive(line.code)[0] == "version"), None)
 
 
 def without_function(code: str, name: str) -> str:
@@ -83,5 +84,5 @@ def without_function(code: str, name: str) -> str:
         depth += {"{": 1, "}": -1}.get(code[end], 0)
         if depth == 0:
             break
-    blank = re.sub(r"[^\n]", " ", code[match.start() : end + 1])
+    blank = "\n".join([" " * len(line) for line in code[match.start() : end + 1].split("\n")])
     return code[: match.start()] + blank + code[end + 1 :]

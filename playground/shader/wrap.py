@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from playground.errors import ShaderError
 from playground.shader.kernel import (
@@ -42,6 +43,9 @@ from playground.shader.reserved_names import (
 )
 from playground.shader.source import Line, SourceText
 from playground.shader.stage_recipe import SIGNATURE, VERSION_NUMBER, Recipe, StagePart, version_line
+from playground.shader.syntax.nodes import Function
+from playground.shader.syntax.symbols import symbols_of
+from playground.shader.syntax.tokens import as_written
 
 _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8
@@ -52,9 +56,7 @@ CORNER = "k_corner"
 
 NOTHING_SKIPPED = f"bool {SKIPS}() {{ return false; }}"
 """What a kernel calls where none of it is skipped."""
-_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
 _READABLE = ("float", "vec2", "vec4")  # types of the buffers that functions read
-_PROTOTYPE = re.compile(r"^(\w+)\s+(\w+)\s*\(([^()]*)\)\s*;", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -135,11 +137,16 @@ def wrap_library(kernel: Kernel, driver: str) -> Wrapped:
 
 def _missing_bodies(code: str) -> list[str]:
     """Return a definition of each function that a text declares and does not define."""
-    return [
-        f"{kind} {name}({arguments}) {{ {'' if kind == 'void' else f'{kind} k_any; return k_any;'} }}"
-        for kind, name, arguments in _PROTOTYPE.findall(code)
-        if not re.search(rf"\b{name}\s*\([^()]*\)\s*\{{", code)
-    ]
+    tree = symbols_of(code).tree
+    functions = [node for node in tree.declarations if isinstance(node, Function)]
+    defined = {node.name for node in functions if node.body is not None}
+    bodies = []
+    for node in functions:
+        if node.name not in defined:
+            kind = tree.source(node.type)
+            body = "" if kind == "void" else f"{kind} k_any; return k_any;"
+            bodies.append(f"{tree.source(node).removesuffix(';')} {{ {body} }}")
+    return bodies
 
 
 def signature(kernel: Kernel) -> str:
@@ -427,26 +434,22 @@ def _argument(text: str) -> tuple[str, str, str]:
 def _check_previous(kernel: Kernel) -> None:
     """Refuse what reads an iteration before where there is none, or by a name that no output has."""
     names = [previous_name(kernel, output) for output in kernel.outputs]
-    for number, line in enumerate(kernel.source.lines):
-        if "previous" not in line.code:
-            continue
-        for match in re.finditer(r"\bprevious(?:_(\w+))?\s*\(", line.code):
-            called = match.group().rstrip("( \t")
+    possible = {"previous", *(f"previous_{output.name}" for output in kernel.outputs)}
+    for line in kernel.source.lines:
+        tokens = list(as_written(line.code)) if "previous" in line.code else []
+        for token, after in pairwise(tokens):
+            called = token.text if after.text == "(" else ""
             if called in names and kernel.repeat == "1":
                 message = f"{called} is the iteration before, but the kernel has one only; give it a repeat"
-                raise kernel.source.lines[number].error(message, match.start() + 1)
-            if called not in names and called in (
-                "previous",
-                *(f"previous_{o.name}" for o in kernel.outputs),
-            ):
-                raise kernel.source.lines[number].error(
-                    f"the iteration before is read by {' and '.join(names)}, not {called}", match.start() + 1
-                )
+                raise line.error(message, token.start + 1)
+            if called not in names and called in possible:
+                message = f"the iteration before is read by {' and '.join(names)}, not {called}"
+                raise line.error(message, token.start + 1)
 
 
 def _unsigned(kernel: Kernel, message: str, position: int = -1) -> ShaderError:
     if position < 0:
-        pragma = next((line for line in kernel.source.lines if _PRAGMA.match(line.text)), None)
+        pragma = next((line for line in kernel.source.lines if line.pragma), None)
         return (pragma or kernel.source.lines[0]).error(message)
     code = kernel.source.code
     number = code.count("\n", 0, position)

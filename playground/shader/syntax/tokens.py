@@ -17,6 +17,7 @@ _TOKEN = re.compile(
     r"|(?P<other>[^\s\\]))",
     re.DOTALL,
 )
+_DIRECTIVE = re.compile(r"\s*#\s*(\w*)\s*(.*)", re.DOTALL)
 _KINDS = ("", *_TOKEN.groupindex)
 _COMMENT = _KINDS.index("comment")
 _NOTHING: frozenset[str] = frozenset()
@@ -83,12 +84,8 @@ def is_named(line: str, names: Collection[str], *, called: bool = False) -> bool
 
 def directive(line: str) -> tuple[str, str]:
     """Return the word of the directive that a line is, and what follows it; ("", "") for none."""
-    code = line.lstrip()
-    if not code.startswith("#"):
-        return "", ""
-    code = code[1:].lstrip()
-    end = next((i for i, letter in enumerate(code) if not (letter.isalnum() or letter == "_")), len(code))
-    return code[:end], code[end:].strip()
+    match = _DIRECTIVE.match(line) if "#" in line else None
+    return (match[1], match[2].rstrip()) if match else ("", "")
 
 
 def place_of(line: str, name: str) -> int:
