@@ -27,6 +27,9 @@ from playground.shader.driver_log import (
 from playground.shader.reserved_names import FETCHES
 from playground.shader.source import Line, SourceText
 from playground.shader.stage_recipe import version_line
+from playground.shader.syntax.nodes import Function
+from playground.shader.syntax.symbols import symbols_of
+from playground.shader.syntax.tokens import place_of
 from playground.shader.wrap import ShaderStage, Wrapped
 
 FOREIGN = "the character U+{0}, {1}, is none of GLSL's: only comments may have it"
@@ -104,32 +107,28 @@ def _defined(message: str, source: SourceText) -> Line | None:
 
     "function `float f(float)' has static recursion"; of ANGLE it is the first of "call chain: f -> g".
     """
-    match = DEFINED.search(message)
-    if match is None:
-        chain = CHAIN.search(message)
-        begins = re.compile(rf"^\s*\w+\s+{chain[1]}\s*\(") if chain else None
-        return next((line for line in source.lines if begins and begins.match(line.code)), None)
-    types = [words.split()[0] for words in match.group(3).split(",") if words.split()]
-    code, near = source.code, None
-    for definition in re.finditer(rf"\b{match.group(1)}\s+{match.group(2)}\s*\(([^)]*)\)\s*\{{", code):
-        line = source.lines[code.count("\n", 0, definition.start())]
-        near = near or line
-        parameters = [
-            [w for w in part.split() if w not in _QUALIFIERS] for part in definition.group(1).split(",")
-        ]
-        if [words[0] for words in parameters if words] == types:
-            return line
-    return near
+    match, chain = DEFINED.search(message), CHAIN.search(message)
+    if match is None and chain is None:
+        return None
+    tree = symbols_of(source.code, all_branches=True).tree
+    kind, name, arguments = match.groups() if match else ("", chain[1] if chain else "", "")
+    types = [words.split()[0] for words in arguments.split(",") if words.split()]
+    defined = [
+        node
+        for node in tree.declarations
+        if isinstance(node, Function) and node.name == name and node.body and kind in ("", node.type.name)
+    ]
+    fitting = [node for node in defined if [one.type.name for one in node.parameters] == types]
+    return next((source.lines[tree.line(node.at)] for node in (*fitting, *defined)), None)
 
 
 DEFINED = re.compile(r"function [`'\"](\w+) (\w+)\(([^)]*)\)[`'\"]")
 CHAIN = re.compile(r"call chain: (\w+)")
-_QUALIFIERS = frozenset({"const", "in", "out", "inout", "lowp", "mediump", "highp"})
 
 
 def _column_of(message: str, code: str) -> int:
     """Find the name that a message quotes, for drivers that give no column."""
     for name in re.findall(r"[`'\"]([A-Za-z_]\w*)['\"]", message):
-        if match := re.search(rf"\b{re.escape(name)}\b", code):
-            return match.start() + 1
+        if (column := place_of(code, name)) >= 0:
+            return column + 1
     return 0
