@@ -1,30 +1,37 @@
 """Split a shader's text into its declarations, and join those of several passes into one text.
 
-What passes declare alike is there once. Where two passes mean different things by one name, each
-pass's own gets the pass's name before it.
+What passes declare alike is there once. Where two passes mean different things by one name, each pass's own
+gets the pass's name before it. A declaration is read as a text of its own: a name that it does not declare
+stands for what is around it.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
+from playground.memo import TEXTS
 from playground.shader.preprocessor import without_guards
 from playground.shader.source import Line
+from playground.shader.syntax import nodes
+from playground.shader.syntax.parser import Tree, parse
+from playground.shader.syntax.preprocessor import preprocess
+from playground.shader.syntax.symbols import symbols_of
+from playground.shader.syntax.tokens import Token, tokenize
 from playground.sketch.model import Parameter, Value
 
-_DIRECTIVE = re.compile(r"\s*#\s*(\w+)\s*(\w*)")
-_UNIFORM = re.compile(r"\s*(?:layout\s*\([^)]*\)\s*)?uniform\b")
-_FUNCTION = re.compile(r"\b[A-Za-z_]\w*\s+([A-Za-z_]\w*)\s*\(")
-_STRUCT = re.compile(r"\s*struct\s+(\w+)")
-_VARIABLES = re.compile(r"\s*(?:(?:const|in|out|flat|highp|mediump|lowp)\s+)*[A-Za-z_]\w*\s+(.*)", re.DOTALL)
-_ARGUMENT = re.compile(r"[A-Za-z_]\w*\s+([A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?[,)]")
-_WORD = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
-_MEMBER = re.compile(r"([A-Za-z_]\w*)(?=\s*(?:\[[^\]]*\]\s*)?[;,])")
-_MARK = re.compile(r"\s*(?:anchor|end): \w+\s*$")  # what lessons quote lies between these
 _CONDITIONS = ("if", "ifdef", "ifndef", "else", "elif", "endif", "undef")
+
+
+class Use(NamedTuple):
+    """A place of a declaration that names something which stands around it."""
+
+    function: str  # whose argument it is; "" where no call takes it as it is
+    start: int  # of the call
+    end: int
+    at: int  # of the name
 
 
 @dataclass(frozen=True)
@@ -32,130 +39,231 @@ class Declaration:
     """A function, a struct, a macro, a constant or a global variable, with the comment above it."""
 
     names: tuple[str, ...]  # what it declares
-    code: str  # without comments
-    text: str  # with them
+    text: str
     is_macro: bool = False
 
-    def reads(self, name: str) -> bool:
-        """Return whether its code names something."""
-        return name in self.words
+    @cached_property
+    def code(self) -> tuple[str, ...]:
+        """Its tokens, without comments."""
+        return tuple(token.text for token in tokenize(self.text)[0])
 
     @cached_property
     def words(self) -> frozenset[str]:
         """Every name in its code, but for members of structs where they are read."""
-        return frozenset(_WORD.findall(self.code))
+        return frozenset(token.text for token in _named(_all_tokens(self.text)))
+
+    def reads(self, name: str) -> bool:
+        """Return whether it names something that stands around it, or itself."""
+        return name in self._places
 
     @cached_property
-    def arguments(self) -> frozenset[str]:
-        """What a function calls its arguments, which hide what the names mean elsewhere."""
-        head = self.code[: self.code.find("{")]
-        return frozenset(_ARGUMENT.findall(head[head.find("(") :])) if "(" in head else frozenset()
+    def _places(self) -> dict[str, list[int]]:
+        """Where it names what stands around it, or what it declares there."""
+        if self.is_macro:
+            (macro,) = preprocess(self.text).macros
+            parameters = macro.parameters or ()
+            body = [token for token in _named(macro.body) if token.text not in parameters]
+            named = [(macro.name, macro.at), *((token.text, token.start) for token in body)]
+        else:
+            symbols = symbols_of(self.text)
+            tokens = symbols.tree.tokens
+            named = [
+                (tokens[one.token].text, tokens[one.token].start)
+                for one in symbols.references
+                if one.symbol is None or (one.symbol.function is None and one.symbol.kind in _OUTSIDE)
+            ]
+            has_directives = any(token.startswith("#") for token in self.code)
+            if symbols.tree.errors or has_directives:  # statements, or conditions
+                named = [(token.text, token.start) for token in _named(_all_tokens(self.text))]
+        places: dict[str, list[int]] = {}
+        for name, start in named:
+            places.setdefault(name, []).append(start)
+        return places
 
-    def edited(self, edit: Callable[[str], str]) -> Declaration:
-        """Return it with its code and its text edited; its names stay."""
-        return replace(self, code=edit(self.code), text=edit(self.text))
+    def uses(self, name: str) -> list[Use]:
+        """Return where it names something that stands around it, and in which calls."""
+        places = self._places.get(name, ())
+        return [self._uses.get(place, Use("", place, place + len(name), place)) for place in places]
+
+    @cached_property
+    def _uses(self) -> dict[int, Use]:
+        """Of each place of a name that is a call's argument."""
+        text, shift = self.text, 0
+        if self.is_macro:
+            (macro,) = preprocess(text).macros
+            begin = macro.body[0].start if macro.body else len(text)
+            head = "void k() {"
+            text, shift = f"{head}{text[begin:]}\n;}}", begin - len(head)
+        uses: dict[int, Use] = {}
+        stack = [parse(text, all_branches=True)]
+        while stack:
+            tree = stack.pop()
+            stack += tree.branches
+            calls = (node for node in nodes.walk(*tree.declarations) if isinstance(node, nodes.Call))
+            for call in calls:
+                for argument in call.arguments:
+                    if isinstance(argument, nodes.Name) and not tree.tokens[argument.first].macros:
+                        start, end = tree.span(call)
+                        at = tree.span(argument)[0] + shift
+                        uses[at] = Use(call.name, start + shift, end + shift, at)
+        return uses
 
     def renamed(self, names: Mapping[str, str]) -> Declaration:
-        """Return it with other names, by the old ones."""
-        names = {old: new for old, new in names.items() if old in self.words and old not in self.arguments}
-        if not names:
+        """Return it with other names, by the old ones; members, parameters and its own variables stay."""
+        edits = [
+            (place, place + len(old), new)
+            for old, new in names.items()
+            for place in self._places.get(old, ())
+        ]
+        if not edits:
             return self
-        own = tuple(names.get(n, n) for n in self.names)
-        return replace(self.edited(lambda text: _renamed(text, names)), names=own)
+        return replace(self, text=edited(self.text, edits), names=tuple(names.get(n, n) for n in self.names))
+
+    def with_calls(self, name: str, new: Callable[[str, str, str], str]) -> Declaration:
+        """Return it with each call that takes a name as an argument replaced, those in its arguments first.
+
+        ``new`` returns the text of a function, the call up to that argument, and the call behind it.
+        """
+        text, grown = self.text, list[tuple[int, int]]()
+        for use in sorted(self.uses(name), key=lambda use: use.start, reverse=True):
+            if use.function:
+                end = use.end + sum(more for start, more in grown if use.start < start < use.end)
+                fresh = new(use.function, text[use.start : use.at], text[use.at + len(name) : end])
+                grown.append((use.start, len(fresh) - (end - use.start)))
+                text = text[: use.start] + fresh + text[end:]
+        return self if text == self.text else replace(self, text=text)
+
+
+_OUTSIDE = ("function", "struct", "variable", "uniform", "block")
 
 
 def declaration_of(text: str, *names: str, is_macro: bool = False) -> Declaration:
     """Return a declaration of our own, which may end in a comment."""
-    return Declaration(names, re.sub(r"//.*", "", text).rstrip(), text, is_macro)
+    return Declaration(names, text, is_macro)
 
 
-def declarations_of(lines: Sequence[Line]) -> list[Declaration]:
+def edited(text: str, edits: Iterable[tuple[int, int, str]]) -> str:
+    """Return a text with other parts from one place to another; none overlap."""
+    for start, end, new in sorted(set(edits), reverse=True):
+        text = text[:start] + new + text[end:]
+    return text
+
+
+def _named(tokens: Iterable[Token]) -> Iterator[Token]:
+    """Yield the names among tokens, but for members behind a dot."""
+    before = ""
+    for token in tokens:
+        if token.kind == "word" and before != ".":
+            yield token
+        before = token.text
+
+
+def _all_tokens(text: str) -> Iterator[Token]:
+    """Yield the tokens of a text, those of its directives too."""
+    for token in tokenize(text)[0]:
+        if token.kind != "directive":
+            yield token
+            continue
+        shift = token.start + 1
+        for part in tokenize(token.text[1:])[0]:
+            yield part._replace(start=part.start + shift, end=part.end + shift)
+
+
+def declarations_of(lines: Sequence[Line]) -> tuple[Declaration, ...]:
     """Return what a flattened text declares, in order: all but its uniforms.
 
     A text that has conditions of its own, or takes a macro back, is one declaration.
     """
     kept = [lines[index] for index in without_guards([line.code for line in lines])]
+    printed = [_with_comment(line) for line in kept if line.code.strip() or not _is_mark(line)]
+    return _declarations_in("\n".join(printed))
+
+
+@TEXTS.cached()  # each step of a repeat is a pass of the same text
+def _declarations_in(text: str) -> tuple[Declaration, ...]:
+    tree = parse(text, all_branches=True)
+    directives = [token for token in tokenize(text)[0] if token.kind == "directive"]
+    words = [token.text[1:].split(maxsplit=1)[:1] for token in directives]
+    if any(word[0] in _CONDITIONS for word in words if word):
+        return (_as_one(text, tree),)
+    units: list[tuple[int, int, tuple[str, ...], bool]] = []
+    units += [(*tree.span(node), names_of(node), False) for node in tree.declarations if not _stays(node)]
+    macros = {macro.start: macro.name for macro in preprocess(text).macros}
+    for token in directives:
+        name = macros.get(token.start)
+        units.append((token.start, token.end, (name,) if name else (), name is not None))
     declarations: list[Declaration] = []
-    above: list[str] = []  # comments
-    codes: list[str] = []
-    texts: list[str] = []
-    depth = 0
-    for line in kept:
-        code = line.code
-        if not code.strip():
-            is_comment = line.comment and not line.pragma and not line.comment.startswith("!")
-            is_mark = _MARK.match(line.comment)
-            if codes:
-                texts += [_with_comment(line)] if is_comment and not is_mark else []
-            elif not is_mark:
-                above = [*above, f"//{line.comment}"] if is_comment else []
+    above = 0  # where the last one ends
+    for start, end, names, is_macro in sorted(units):
+        begin = text.rfind("\n", above, start) + 1 or above
+        if start < above:  # of one macro, or of one line
+            declarations[-1] = replace(declarations[-1], names=declarations[-1].names + names)
             continue
-        codes.append(code)
-        texts.append(_with_comment(line))
-        depth += sum(code.count(a) for a in "{([") - sum(code.count(a) for a in "})]")
-        directive = _DIRECTIVE.match(code) if len(codes) == 1 else None
-        if not directive and (depth > 0 or not code.rstrip().endswith((";", "}"))):
-            continue
-        if not _UNIFORM.match(codes[0]) and not codes[0].lstrip().startswith("precision "):
-            written = "\n".join(codes)
-            names = (directive.group(2),) if directive else _names_in(written)
-            is_macro = directive is not None and directive.group(1) == "define"
-            declarations.append(Declaration(names, written, "\n".join([*above, *texts]), is_macro))
-        above, codes, texts, depth = [], [], [], 0
-    directives = [_DIRECTIVE.match(d.code) for d in declarations]
-    if any(d and d.group(1) in _CONDITIONS for d in directives):
-        whole = tuple(dict.fromkeys(name for d in declarations if not d.is_macro for name in d.names if name))
-        return [
-            Declaration(
-                whole, "\n".join(d.code for d in declarations), "\n".join(d.text for d in declarations)
-            )
-        ]
-    return declarations
+        following = min((unit[0] for unit in units if unit[0] >= end), default=len(text))
+        behind = text.find("\n", end) if "\n" in text[end:following] else following
+        above = behind if behind >= 0 else len(text)
+        comment: list[str] = []
+        for line in reversed(text[:begin].split("\n")[:-1]):
+            if not line.lstrip().startswith("//"):
+                break
+            comment.insert(0, line.lstrip())
+        code = [line.rstrip() for line in text[begin:above].split("\n") if line.strip()]
+        declarations.append(Declaration(names, "\n".join([*comment, *code]), is_macro))
+    return tuple(declarations)
+
+
+def _as_one(text: str, tree: Tree) -> Declaration:
+    names: dict[str, None] = {}
+    stack = [tree]
+    while stack:
+        part = stack.pop()
+        stack += part.branches
+        for node in part.declarations:
+            if not _stays(node):
+                names |= dict.fromkeys(names_of(node))
+            else:
+                start, end = part.span(node)
+                text = text[:start] + " " * (end - start) + text[end:]
+    lines: list[str] = []  # from the last on: a comment belongs to what is right below it
+    is_beside = False
+    for line in reversed(text.split("\n")):
+        is_comment = line.lstrip().startswith("//")
+        is_beside = bool(line.strip()) and (is_beside or not is_comment)
+        lines += [line] if is_beside else []
+    return Declaration(tuple(names), "\n".join(reversed(lines)))
+
+
+def _stays(node: nodes.Node) -> bool:
+    """Return whether a text is left without something: its uniforms, and what precision numbers have."""
+    if isinstance(node, nodes.Declaration):
+        return "uniform" in node.type.qualifiers
+    return isinstance(node, nodes.Precision | nodes.Empty) or (
+        isinstance(node, nodes.InterfaceBlock) and "uniform" in node.qualifiers
+    )
+
+
+def names_of(node: nodes.Node) -> tuple[str, ...]:
+    """Return what a declaration declares."""
+    if isinstance(node, nodes.Function):
+        return (node.name,)
+    if not isinstance(node, nodes.Declaration):
+        return ()
+    struct = node.type.struct
+    return (*((struct.name,) if struct and struct.name else ()), *(one.name for one in node.names))
+
+
+def _is_mark(line: Line) -> bool:
+    """Return whether a comment begins or ends what lessons quote."""
+    return line.comment.strip().startswith(("anchor: ", "end: "))
 
 
 def _with_comment(line: Line) -> str:
     """Return a line's code with its comment; an annotation is left out."""
+    is_comment = line.comment and not line.pragma and not line.comment.startswith("!")
     if not line.code.strip():
         indent = line.text[: len(line.text) - len(line.text.lstrip())]
-        return f"{indent}//{line.comment}"
-    comment = "" if not line.comment or line.comment.startswith("!") else f"  //{line.comment}"
-    return f"{line.code.rstrip()}{comment}"
-
-
-def _names_in(code: str) -> tuple[str, ...]:
-    struct = _STRUCT.match(code)
-    if struct:
-        return (struct.group(1),)
-    head = code[: code.find("{")] if "{" in code else code
-    function = _FUNCTION.search(head)
-    if function and "=" not in head[: function.start(1)]:
-        return (function.group(1),)
-    variables = _VARIABLES.match(code)
-    if not variables:
-        return ()
-    names, depth, part = [], 0, ""
-    for letter in variables.group(1):
-        depth += (letter in "([{") - (letter in ")]}")
-        if letter in ",;" and depth == 0:
-            names += re.findall(r"^\s*([A-Za-z_]\w*)", part)
-            part = ""
-        else:
-            part += letter
-    return tuple(names)
-
-
-def _renamed(text: str, names: Mapping[str, str]) -> str:
-    """Return a text with other names outside of comments; members of structs keep theirs."""
-    parts = []
-    for line in text.split("\n"):
-        code, mark, comment = line.partition("//")
-        parts.append(_WORD.sub(lambda word: names.get(word.group(), word.group()), code) + mark + comment)
-    new = "\n".join(parts)
-    if _STRUCT.match(text):
-        back = {new: old for old, new in names.items()}
-        head, brace, body = new.partition("{")
-        new = head + brace + _MEMBER.sub(lambda m: back.get(m.group(1), m.group(1)), body)
-    return new
+        return f"{indent}//{line.comment}" if is_comment else ""
+    return f"{line.code.rstrip()}  //{line.comment}" if is_comment else line.code.rstrip()
 
 
 @dataclass(frozen=True)
@@ -193,20 +301,20 @@ def joined(
     return Joined(tuple(_once(shared)), tuple(() for _ in passes), tuple(names))
 
 
-def _codes(passes: Sequence[Sequence[Declaration]]) -> dict[str, dict[int, str]]:
+def _codes(passes: Sequence[Sequence[Declaration]]) -> dict[str, dict[int, tuple[str, ...]]]:
     """Return for each name, by pass, all that declares it there."""
-    codes: dict[str, dict[int, str]] = {}
+    codes: dict[str, dict[int, tuple[str, ...]]] = {}
     for index, declarations in enumerate(passes):
         for each in declarations:
             for name in each.names:
                 by_pass = codes.setdefault(name, {})
-                by_pass[index] = by_pass.get(index, "") + each.code + "\n"
+                by_pass[index] = (*by_pass.get(index, ()), *each.code)
     return codes
 
 
 def _once(declarations: Collection[Declaration]) -> list[Declaration]:
     """Return declarations without those whose code is there already."""
-    by_code: dict[str, Declaration] = {}
+    by_code: dict[tuple[str, ...], Declaration] = {}
     for each in declarations:
         by_code.setdefault(each.code, each)
     return list(by_code.values())

@@ -6,20 +6,19 @@ What its own tool gives it becomes a global variable, set from what the new one 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from playground.errors import SketchError
 from playground.publish.shader_export.declarations import Declaration, declaration_of, declarations_of
 from playground.publish.shader_export.passes import ShaderPass, neutral
 from playground.publish.shader_export.texts import Host, PassText, Sampled, variable_of, without_unwired
-from playground.shader.declarations import uniforms
 from playground.shader.reserved_names import NEUTRAL, SIZES
 from playground.shader.source import Line
-from playground.shader.syntax.nodes import Declaration as Declared
-from playground.shader.syntax.nodes import InterfaceBlock, Precision, Type
+from playground.shader.syntax.nodes import Declaration as Statement
+from playground.shader.syntax.nodes import Declarator, Node, Precision
 from playground.shader.syntax.parser import parse
-from playground.shader.syntax.tokens import as_written
+from playground.shader.syntax.tokens import tokenize
 from playground.sketch.model import ForeignShader, Kernel
 
 
@@ -52,13 +51,13 @@ def foreign_text(pass_: ShaderPass, host: Host, expressions: Mapping[str, Callab
         value += own
         statements += setting
     for declaration, setting_text in foreign.vertex if foreign and isinstance(foreign.vertex, tuple) else ():
-        varying = parse(declaration).declarations[0]
-        if not isinstance(varying, Declared) or varying.type.arrays or varying.names[0].arrays:
+        node = next(iter(parse(declaration).declarations), None)
+        if not isinstance(node, Statement) or len(node.names) != 1 or node.names[0].arrays:
             message = (
                 f"pass '{pass_.step.path}' takes '{declaration}' of a vertex shader, which others have not"
             )
             raise SketchError(message)
-        value.append(variable_of(varying.type.name, varying.names[0].name))
+        value.append(variable_of(node.type.name, node.names[0].name))
         share = f"(({host.pixel}) / vec2({host.size}))"
         text = setting_text.replace("k_share", share).replace("k_place", f"({share} * 2.0 - 1.0)")
         statements.append(text)
@@ -80,48 +79,67 @@ def foreign_text(pass_: ShaderPass, host: Host, expressions: Mapping[str, Callab
 
 def _own_lines(kernel: Kernel) -> tuple[list[Line], str]:
     """Return a text's lines without what a fragment shader of its own needs, and what it writes."""
-    codes: list[str] = []
-    in_precision = False
-    for line in kernel.source.lines:
-        _, word, *words = [*_words(line.code), "", ""] if "#" in line.code else ("", "")
-        names = {*words}.difference(("defined", "(", ")", ""))
-        in_precision |= word in ("if", "ifdef") and names == {"GL_ES"}
-        codes.append("" if in_precision or word in ("version", "extension") else line.code)
-        in_precision &= word != "endif"
-    text, output = "\n".join(codes), "k_frag_color"
-    whole = parse(text, all_branches=True)
-    left_out: list[tuple[int, int]] = []
-    for tree in (whole, *whole.branches):
+    output = "k_frag_color"
+    text = "\n".join(line.code for line in kernel.source.lines)
+    edits: list[tuple[int, int, str]] = []
+    trees = [parse(text, all_branches=True)]
+    for tree in trees:
+        trees += tree.branches
         for node in tree.declarations:
-            kind = node.type if isinstance(node, Declared) else node
-            qualifiers = kind.qualifiers if isinstance(kind, Type | InterfaceBlock) else ()
             start, end = tree.span(node)
-            if isinstance(node, Precision) or "in" in qualifiers:
-                left_out.append((start, end))
-            elif isinstance(node, Declared) and "out" in qualifiers and node.type.name in ("vec3", "vec4"):
-                name = node.names[0].name
-                output = name if node.type.name == "vec4" else f"vec4({name}, 1.0)"
-                left_out.append((start, tree.tokens[node.type.at].start))
-    for start, end in sorted(left_out, reverse=True):
-        text = text[:start] + "\n" * text.count("\n", start, end) + text[end:]
-    codes = [code if code.strip() else "" for code in text.split("\n")]
-    lines = [
-        line if line.code == code else replace(line, code=code, comment="")
-        for line, code in zip(kernel.source.lines, codes, strict=True)
-    ]
-    return lines, output
+            if isinstance(node, Precision) or _is_input(node):
+                edits.append((start, end, ""))
+            elif (out := _output(node)) is not None:
+                name, kind = out.name, node.type.name  # type: ignore[attr-defined]
+                output = name if kind == "vec4" else f"vec4({name}, 1.0)"
+                edits.append((start, end, f"{kind} {name};"))
+    edits += _directives(text, [(start, end) for start, end, new in edits if not new])
+    for start, end, new in sorted(edits, reverse=True):
+        text = text[:start] + new + "\n" * text.count("\n", start, end) + text[end:]
+    pairs = zip(kernel.source.lines, text.split("\n"), strict=True)
+    return [
+        line if code == line.code else replace(line, code=code, comment="") for line, code in pairs
+    ], output
 
 
-def _words(code: str) -> list[str]:
-    return [token.text for token in as_written(code)]
+def _directives(text: str, gone: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int, str]]:
+    """Yield the directives that a fragment shader begins with, and conditions on GL_ES around them alone."""
+    open_: list[int] = []
+    tokens = tokenize(text)[0]
+    for index, token in enumerate(tokens):
+        words = token.text[1:].split() if token.kind == "directive" else [""]
+        if words[0] in ("version", "extension"):
+            yield token.start, token.end, ""
+        elif words[0].startswith("if"):
+            open_.append(index)
+        elif words[0] == "endif" and open_:
+            first = open_.pop()
+            between = tokens[first + 1 : index]
+            is_gone = all(any(start <= one.start < end for start, end in gone) for one in between)
+            if "GL_ES" in tokens[first].text and is_gone:
+                yield tokens[first].start, tokens[first].end, ""
+                yield token.start, token.end, ""
+
+
+def _is_input(node: Node) -> bool:
+    return isinstance(node, Statement) and not {"in", "varying"}.isdisjoint(node.type.qualifiers)
+
+
+def _output(node: Node) -> Declarator | None:
+    """Return what a declaration of a picture's colour declares."""
+    is_output = isinstance(node, Statement) and "out" in node.type.qualifiers
+    if not is_output or node.type.name not in ("vec3", "vec4"):  # type: ignore[attr-defined]
+        return None
+    names: list[Declarator] = node.names  # type: ignore[attr-defined]
+    return names[0] if len(names) == 1 and not names[0].arrays else None
 
 
 def _prelude(line: str) -> Declaration | None:
     """Return what a line before the text declares for all of it, but for what is given otherwise."""
-    words = _words(line)
-    if words[:2] == ["#", "define"]:
-        return declaration_of(line, words[2], is_macro=True)
-    is_output = "out" in words and words[-2:] == ["k_frag_color", ";"]
+    tree = parse(line)
+    for macro in tree.preprocessed.macros:
+        return declaration_of(line, macro.name, is_macro=True)
+    is_output = any(_output(node) is not None for node in tree.declarations)
     return declaration_of("vec4 k_frag_color;", "k_frag_color") if is_output else None
 
 
@@ -131,11 +149,15 @@ def _without_twins(declarations: list[Declaration]) -> list[Declaration]:
 
 def _kinds(kernel: Kernel) -> dict[str, tuple[str, str]]:
     """Return the type of each uniform, and the brackets of an array."""
-    prelude = "\n".join(kernel.prelude) if isinstance(kernel, ForeignShader) else ""
-    kinds = {}
-    for code in (prelude, kernel.source.code):
-        for name, declared in uniforms(code).items():
-            kinds[name] = declared.type, "".join(_words(declared.written)[1:4]) if declared.is_array else ""
+    kinds: dict[str, tuple[str, str]] = {}
+    for text in ("\n".join(kernel.prelude) if isinstance(kernel, ForeignShader) else "", kernel.source.code):
+        tree = parse(text)
+        for node in tree.declarations:
+            if isinstance(node, Statement) and "uniform" in node.type.qualifiers:
+                for one in node.names:
+                    sizes = [size for size in (*one.arrays, *node.type.arrays) if size is not None]
+                    texts = [[t.text for t in tree.tokens[size.first : size.last]] for size in sizes]
+                    kinds[one.name] = node.type.name, "".join(f"[{''.join(parts)}]" for parts in texts)
     return kinds
 
 

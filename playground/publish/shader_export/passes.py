@@ -7,7 +7,6 @@ is the picture's in both is the picture's, one that stays is a number.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ from pathlib import Path
 from playground.engine.plan import LoopStep, Plan, PlanNode, PlanRequest, Step, needed, sources_of
 from playground.engine.planner import make_plan
 from playground.errors import Diagnostic, PlaygroundError, SketchError
+from playground.publish.shader_export.declarations import declarations_of
 from playground.shader import expressions
 from playground.shader.reserved_names import GLSL_WORDS, NEUTRAL, SIZES
 from playground.shader.wrap import previous_name
@@ -305,13 +305,9 @@ class _Passes:
 
 def _hands_on(step: Step, source: Source) -> bool:
     """Return whether a step does more with an input than to fetch single texels of it."""
-    code = step.kernel.source.code
-    for name, read in step.inputs:
-        uses = len(re.findall(rf"(?<![\w.]){name}\b", code)) - 1  # its declaration
-        fetches = len(re.findall(rf"\b(?:texelFetch|textureSize)\s*\(\s*{name}\s*,", code))
-        if read == source and not name.startswith("initial") and uses > fetches:
-            return True
-    return False
+    names = {name for name, read in step.inputs if read == source and not name.startswith("initial")}
+    uses = (use for each in declarations_of(step.kernel.source.lines) for n in names for use in each.uses(n))
+    return any(use.function not in ("texelFetch", "textureSize") for use in uses)
 
 
 def _times(size: tuple[int, int]) -> str:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 from playground.engine.camera import unit_vector
 from playground.publish.export_formats import COLOUR
@@ -22,7 +20,7 @@ from playground.shader.reserved_names import MATCHES, TOWARDS, WIRED
 from playground.shader.wrap import previous_name
 from playground.sketch.model import Kernel, Output, Parameter, Value
 
-_CALL = r"\b(texelFetch|texelFetchOffset|textureLod|textureSize|texture)\s*\(\s*{name}\s*,"
+_READS = frozenset("texelFetch texelFetchOffset textureLod textureSize texture".split())
 _FALLBACKS = {"white": "vec4(1.0)", "black": "vec4(0.0, 0.0, 0.0, 1.0)"}
 _BYTES = ("r8", "rg8", "rgba8")
 CONSTANT = "constant_"
@@ -118,7 +116,7 @@ def text_of(leaving: ExportPlan, pass_: ShaderPass, host: Host, sizes: Mapping[s
     declarations = [without_unwired(d, unwired) for d in declarations_of(kernel.source.lines)]
     declarations = [_with_start(d, starting, host.frame) for d in declarations]
     for name in unwired:
-        if any(d.reads(name) and name not in d.arguments for d in declarations):
+        if any(d.reads(name) for d in declarations):
             reads.append(_instead(pass_, name, reads))
     lines, value = _call(kernel, pass_.output, host.texel)
     result = _filled(pass_.output, value)
@@ -170,48 +168,27 @@ def constants_of(texts: Sequence[PassText]) -> list[PassText]:
 
 def handed_on(text: PassText, word: str) -> bool:
     """Return whether a text does more with a texture than to fetch single texels of it."""
-    uses = fetches = 0
-    for each in text.declarations:
-        if word in each.arguments:
-            continue
-        uses += len(re.findall(rf"(?<![\w.]){word}\b", each.code))
-        fetches += len(re.findall(rf"\btexelFetch\s*\(\s*{word}\s*,", each.code))
-    return uses > fetches
+    return any(use.function != "texelFetch" for each in text.declarations for use in each.uses(word))
 
 
 def is_sampled(text: PassText, word: str) -> bool:
     """Return whether a text may sample a texture between its texels, itself or in a function it calls."""
     samplers = {"textureLod", "texture"}
     while True:
-        more = {n for d in text.declarations if not samplers.isdisjoint(d.words) for n in d.names} - samplers
+        more = {n for d in text.declarations if any(map(d.reads, samplers)) for n in d.names} - samplers
         if not more:
             break
         samplers |= more
-    for each in text.declarations:
-        if word in each.arguments:
-            continue
-        for use in re.finditer(rf"(?<![\w.]){word}\b", each.code):
-            if _caller(each.code, use.start()) in samplers:
-                return True
-    return False
-
-
-def _caller(code: str, position: int) -> str:
-    """Return the function that a place in a text is an argument of; "" where it is none."""
-    depth = 0
-    for index in range(position - 1, -1, -1):
-        depth += (code[index] == ")") - (code[index] == "(")
-        if depth < 0:
-            match = re.search(r"(\w+)\s*$", code[:index])
-            return match[1] if match else ""
-    return ""
+    return any(use.function in samplers for each in text.declarations for use in each.uses(word))
 
 
 def with_size_of(text: PassText, word: str, size: str) -> PassText:
     """Return a text in which the size of a texture that it reads is written as a constant."""
-    fixed = partial(re.compile(rf"\btextureSize\s*\(\s*{word}\s*,\s*0\s*\)").sub, size)
-    declarations = tuple(each if word in each.arguments else each.edited(fixed) for each in text.declarations)
-    return replace(text, declarations=declarations)
+
+    def fixed(function: str, before: str, behind: str) -> str:
+        return size if function == "textureSize" else f"{before}{word}{behind}"
+
+    return replace(text, declarations=tuple(each.with_calls(word, fixed) for each in text.declarations))
 
 
 def variable_of(kind: str, name: str) -> Declaration:
@@ -293,28 +270,15 @@ def _copy(pass_: ShaderPass, host: Host) -> PassText:
 def _with_start(declaration: Declaration, starting: Mapping[str, str], frame: str) -> Declaration:
     """Return a declaration that reads a texture's start in the first frame."""
     for name, start in starting.items():
-        if declaration.reads(name) and name not in declaration.arguments:
 
-            def either(match: re.Match[str], call: str, start: str = start) -> str:
-                return f"({frame} == 0 ? {call.replace(match[0], f'texelFetch({start},', 1)} : {call})"
+        def either(function: str, before: str, behind: str, name: str = name, start: str = start) -> str:
+            call = f"{before}{name}{behind}"
+            if function != "texelFetch":
+                return call
+            return f"({frame} == 0 ? {before}{start}{behind} : {call})"
 
-            pattern = re.compile(rf"\btexelFetch\s*\(\s*{name}\s*,")
-            declaration = declaration.edited(partial(_replace_calls, pattern, either))
+        declaration = declaration.with_calls(name, either)
     return declaration
-
-
-def _replace_calls(pattern: re.Pattern[str], new: Callable[[re.Match[str], str], str], text: str) -> str:
-    """Replace each call whose head matches, from its name to its bracket; those in its arguments first."""
-    done = ""
-    while match := pattern.search(text):
-        depth, end = 1, match.end()
-        while depth and end < len(text):
-            depth += (text[end] == "(") - (text[end] == ")")
-            end += 1
-        arguments = _replace_calls(pattern, new, text[match.end() : end])
-        done += text[: match.start()] + new(match, match[0] + arguments)
-        text = text[end:]
-    return done + text
 
 
 def _previous(kernel: Kernel, output: Output, wire: Wire, host: Host) -> Declaration:
@@ -362,11 +326,11 @@ def shown_text(text: PassText, components: int, kind: str, host: Host) -> PassTe
 def without_unwired(declaration: Declaration, unwired: Mapping[str, str]) -> Declaration:
     """Return a declaration in which what an unwired input is read by is a constant."""
     for name, value in unwired.items():
-        if declaration.reads(name):
 
-            def constant(match: re.Match[str], _: str, value: str = value) -> str:
-                return "ivec2(1)" if match[1] == "textureSize" else value
+        def constant(function: str, before: str, behind: str, name: str = name, value: str = value) -> str:
+            if function not in _READS:
+                return f"{before}{name}{behind}"
+            return "ivec2(1)" if function == "textureSize" else value
 
-            pattern = re.compile(_CALL.format(name=name))
-            declaration = declaration.edited(partial(_replace_calls, pattern, constant))
+        declaration = declaration.with_calls(name, constant)
     return declaration
