@@ -11,7 +11,7 @@ from lsprotocol import types
 from playground.errors import Diagnostic
 from playground.lsp.documents import Document, Documents
 from playground.lsp.rename import references
-from playground.lsp.shader import Shader, Syntax, shader_of, syntax_of, word_at
+from playground.lsp.shader import Shader, Syntax, shader_of, syntax_of, word_at, words
 from playground.paths import shown
 from playground.shader.reserved_names import GLSL_WORDS, MATCHES, TOWARDS, WIRED
 from playground.shader.syntax.influence import Influence, unused
@@ -44,6 +44,14 @@ _KINDS = {
     "member": 3,
     "struct": 4,
 }
+_OF_PRAGMAS = [
+    "size",
+    "spacing",
+    "iteration",
+    "iterations",
+    "until",
+    "previous",
+]  # what a repeat or a size sets
 _MAX_RANGES = 16  # of lines in a hover
 _DECLARATION, _READONLY, _GIVEN = 1, 2, 4
 
@@ -63,6 +71,8 @@ def influence(shader: Shader, name: str, at: int) -> list[tuple[Path, int, int]]
         return None
     if shader.parameter(name) is not None:
         names += [f"{prefix}{name}" for prefix in (TOWARDS, WIRED, MATCHES)]
+        if any(word.text == name for word in words(_pragmas(shader))):
+            names += _OF_PRAGMAS
     if name in shader.engine_names:
         names.append(name)
     found = []
@@ -70,6 +80,12 @@ def influence(shader: Shader, name: str, at: int) -> list[tuple[Path, int, int]]
         (path, start), (last, end) = (unit.origin(place) for place in _ends(syntax, node))
         found.append((path, start, end + 1 if last == path else start + 1))
     return found
+
+
+def _pragmas(shader: Shader) -> str:
+    """Return what the quotes of a kernel's pragmas hold: expressions of its parameters among it."""
+    directives = syntax_of(shader.text).tree.preprocessed.directives
+    return " ".join(part for each in directives for part in each.text.split('"')[1::2])
 
 
 def _symbols_of(syntax: Syntax, name: str, places: set[int]) -> Iterator[Symbol]:

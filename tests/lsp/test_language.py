@@ -66,7 +66,7 @@ def test_a_kernel_is_completed_with_all_that_it_may_name(editor: Editor, hill: s
 
 def test_a_function_of_the_library_brings_its_include(editor: Editor, folder: Path) -> None:
     uri = (folder / "hill.glsl").as_uri()
-    text = KERNEL.replace("    return", "    float more = rando;\n    return")
+    text = KERNEL.replace("    return", "    far += rando;\n    return")
     editor.open(uri, text)
     line, column = place(text, "rando", 5)
     result = {i["label"]: i for i in editor.at("completion", uri, line, column)["items"]}["random"]
@@ -174,7 +174,7 @@ float kernel(ivec2 texel) {
 
 @pytest.mark.parametrize(
     ("word", "lines"),
-    [("gain =", "10-12, 14"), ("sun =", "6, 14"), ("loss)", "5-6, 14"), ("texel)", "9-12, 14")],
+    [("gain =", "10-12, 14"), ("sun =", "4, 6, 14"), ("loss)", "4-6, 14"), ("texel)", "8-12, 14")],
 )
 def test_hover_tells_the_lines_that_a_name_can_change(
     editor: Editor, folder: Path, word: str, lines: str

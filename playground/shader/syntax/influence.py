@@ -48,6 +48,9 @@ OUT_ARGUMENTS = {
 }
 """Functions of GLSL that write an argument → which."""
 
+ENTRY, PREVIOUS = "kernel", "previous"
+"""The function of a kernel, and the name, or its beginning, of the function that reads the step before."""
+
 ENTRIES = frozenset(
     "kernel vertex fragment main mainImage mainCubemap mainSound mainVR previous channel_texels".split()
 )
@@ -72,7 +75,13 @@ class Influence:
         for node in symbols.tree.declarations:
             if isinstance(node, Function) and node.body is not None:
                 self._function = node
+                for parameter in node.parameters:
+                    own = frozenset({self._parameters.get(parameter), ("runs", node)})
+                    self._statements.append((parameter, own))
                 self._visit(node.body, frozenset({("runs", node)}))
+                if node.name == ENTRY:  # what it gives is what the next iteration reads as previous
+                    outs = {self._parameters[each] for each in node.parameters if _is_out(each)}
+                    self._flow({("result", node), *outs}, PREVIOUS)
             elif isinstance(node, Declaration):
                 self._function = None
                 self._visit(node, frozenset())
@@ -80,8 +89,8 @@ class Influence:
     def statements(self, names: Iterable[Symbol | str]) -> list[Node]:
         """Return the statements that any of some names can influence, or whether they run.
 
-        Of a branch or a loop that is its condition; of a declaration, its declarator. ``names`` has texts of
-        what the text does not declare.
+        Of a branch or a loop that is its condition, of a declaration its declarator, of a call parameters.
+        ``names`` has texts of what the text does not declare.
         """
         facts: set[Hashable] = set(names)
         rest = list(facts)
@@ -221,7 +230,7 @@ class Influence:
             self._subscripts(argument, around) if number in written else self._reads(argument, around)
             for number, argument in enumerate(node.arguments)
         ]
-        own: frozenset[Hashable] = frozenset().union(*arguments, () if functions else (node.name,))
+        own: frozenset[Hashable] = frozenset().union(*arguments, () if functions else (_given(node.name),))
         for size in node.arrays:
             own |= self._reads(size, around) if size is not None else frozenset()
         for function in functions:
@@ -279,6 +288,11 @@ class Influence:
         while more := {f for f, called in calls.items() if f not in stopping and called & stopping}:
             stopping |= more
         return stopping
+
+
+def _given(name: str) -> str:
+    """Return the fact of a function that the text does not declare."""
+    return PREVIOUS if name.startswith(PREVIOUS) else name
 
 
 def _count(function: Symbol) -> int:
