@@ -10,7 +10,16 @@ from typing import Any
 
 import pytest
 
+import playground
+from playground.engine.trace.model import Event
+from playground.lsp.documents import Documents, root_for
+from playground.lsp.highlight import influence
+from playground.lsp.shader import shader_at
 from playground.paths import NAME, SKETCHES
+from playground.shader.outline import outline
+from playground.sketch.assign import values_of
+from playground.sketch.load import load
+from playground.sketch.model import kernels_of
 
 from .client import PATIENCE, Editor
 from .test_language import place
@@ -181,3 +190,51 @@ def test_the_window_s_texel_is_shown_in_every_file_of_its_pass(traced: Editor, h
 def test_shipped_texts_have_no_trace() -> None:
     folder: Path = SKETCHES.parent
     assert not [path for path in folder.rglob("*.glsl") if "// trace:" in path.read_text(encoding="utf-8")]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["diamond_square_steps", "rivers", "lighting_beams", "sun_disc"])
+def test_all_values_that_a_uniform_changes_are_on_its_lines(name: str) -> None:
+    """The truth is two traces of a texel, one of them with another value of the uniform."""
+    changed = 0
+    sketch = load(name).with_values({"size": 65})
+    values = values_of(sketch)
+    with playground.headless() as engine:
+        for path, kernel in list(kernels_of(sketch.graph))[:6]:
+            file = Path(kernel.path)
+            for parameter in [
+                p for p in kernel.parameters if p.type in ("float", "int") and p.file == kernel.path
+            ]:
+                own = f"{path}.{parameter.name}"
+                other = values[own] + 1 if parameter.type == "int" else values[own] * 0.83 + 0.01
+                try:
+                    traces = [
+                        engine.trace(sketch, path, texel=(5, 7), function="all", size=(64, 36), values=some)
+                        for some in ({}, {own: other})
+                    ]
+                except playground.PlaygroundError:
+                    continue  # a pass without a fragment shader, or a value that is out of its range
+                shader = shader_at(file, file.read_text(encoding="utf-8"), root_for(file), Documents())
+                at = next(each.at for each in outline(shader.text) if each.name == parameter.name)
+                texts = dict(shader.files)
+                lines = {
+                    (str(place), texts[place].count("\n", 0, start) + 1 + more)
+                    for place, start, end in influence(shader, parameter.name, at) or ()
+                    for more in range(texts[place].count("\n", start, end) + 1)
+                }
+                one, two = (
+                    {place: [repr(e.value) for e in events] for place, events in by_place(t).items()}
+                    for t in traces
+                )
+                different = {place for place in one.keys() | two.keys() if one.get(place) != two.get(place)}
+                assert {(file, line) for file, line, _ in different} <= lines, own
+                changed += len(different)
+    assert changed > 5
+
+
+def by_place(trace: playground.Trace) -> dict[tuple[str, int, int], list[Event]]:
+    places: dict[tuple[str, int, int], list[Event]] = {}
+    for event in trace.events:
+        if event.value is not None:
+            places.setdefault((event.path, event.line, event.column), []).append(event)
+    return places
