@@ -39,7 +39,8 @@ from playground.paths import shown
 from playground.shader.header import is_given, parse_kernel
 from playground.shader.reserved_names import GLSL_WORDS, MATCHES, PREFIX, TOWARDS, WIRED
 from playground.shader.source import read_source, read_text
-from playground.shader.syntax.nodes import For, Node, While
+from playground.shader.syntax.influence import ENTRY
+from playground.shader.syntax.nodes import For, Function, Node, While
 from playground.sketch.assign import find_targets
 from playground.sketch.load import load_with
 from playground.sketch.model import Graph, Parameter, Technique
@@ -124,6 +125,11 @@ def _meaning(shader: Shader, name: str, start: int) -> tuple[Any, ...]:
         raise Refused(f"'{name}' is a component, or a member of what has no known type")
     if meaning[0] == "member" and shader.unit.syntax.is_swizzle(name, meaning[1]):
         raise Refused(f"'{name}' is a component; those are not renamed")
+    if meaning[0] == "local" and isinstance(function := meaning[2], Function):
+        for parameter in function.parameters:
+            is_output = function.name == ENTRY and "out" in parameter.type.qualifiers
+            if parameter.name == name and (is_output or function.name in ("vertex", "fragment")):
+                raise Refused(f"{function.name} gives or takes '{name}' by its name; its name is fixed")
     if meaning[0] == "top":
         if is_given(name) or name in _ENTRIES:
             raise Refused(f"'{name}' is what the playground gives or calls; its name is fixed")

@@ -565,6 +565,7 @@ def test_a_rename_changes_what_the_name_stands_for(editor: Editor, folder: Path,
             "far",
             "is a name in .*hill.glsl:3 already",
         ),
+        ("void kernel(ivec2 t, out float height) { height = 1.0; }", "height)", "low", "its name is fixed"),
         (
             "#define FAR 1.0\nfloat kernel(ivec2 t) { float e = FAR; return e; }",
             "e = FAR",
