@@ -148,9 +148,6 @@ def _assignment(
     return Assignment(lesson, task, starter)
 
 
-NUMBER_KEY = "number"
-"""What stands before the colon behind which a student writes the answer to a question."""
-
 _HEADER = re.compile(r"^\s*\[\[?\s*([A-Za-z_-]+)")
 _LEFT_OUT = ("shot", "preset", "keyframe")
 _INCLUDE = re.compile(r'^(\s*#\s*include\s+")([^"]+)(")', re.MULTILINE)
@@ -193,7 +190,7 @@ def student_files(assignment: Assignment) -> dict[str, bytes]:
 def _number_file(assignment: Assignment) -> str:
     """Return the file of a question: a student writes the number behind its last colon."""
     label = labels("handout", assignment.lesson.language)
-    return f"{assignment.title}\n\n{label['number_file']}\n\n{NUMBER_KEY}: \n"
+    return f"{assignment.title}\n\n{label['number_file']}\n\n{label['number_key']}: \n"
 
 
 def _without_moments(text: str, assignment: Assignment) -> str:

@@ -88,6 +88,27 @@ set = { "height.seed" = 1 }
 set = { "height.seed" = 2 }
 ```
 
+```trace centre
+sketch    = "diamond_square_steps"
+pass      = "height.raw"
+texel     = [2, 2]
+iteration = 1
+file      = "generation/diamond_square/raw.glsl"
+anchor    = "height"
+loop      = "i"
+variables = ["total"]
+rows      = [0, 3]
+caption   = "The first centre."
+```
+
+```question corners
+trace    = "centre"
+variable = "total"
+step     = 3
+ask      = "What is the sum of 0.2, 0.9, 0.6 and 0.4?"
+answer   = "Their sum."
+```
+
 ## A bug
 
 ```code mean
@@ -185,6 +206,15 @@ alt     = "Des terrains plus rugueux"
 caption = "Deux terrains."
 alt     = "Deux terrains de gravats"
 labels  = ["premier", "second"]
+```
+
+```trace centre
+caption = "Le premier centre."
+```
+
+```question corners
+ask    = "Quelle est la somme de 0,2, 0,9, 0,6 et 0,4 ?"
+answer = "Leur somme."
 ```
 
 ## Une faute

@@ -10,6 +10,7 @@ from imgui_bundle import ImVec2, imgui
 from playground import cli
 from playground.course.scenes import Sketches
 from playground.course.window.panel import follow
+from playground.errors import SketchError
 from playground.sketch.find import find
 
 from .lesson_desk import FILE, value
@@ -220,3 +221,36 @@ def test_lessons_beside_sketch_resume_unless_closed(harness, shown):
     harness.lessons.begin({"lesson": "halving", "language": "fr"})
     harness.run_frames(3)
     assert harness.reader.lesson.title == "Moitiés" and harness.session.path == find("white_noise")
+
+
+def test_a_trace_is_stepped_through_and_its_question_checked(harness):
+    harness.open(2)
+    harness.run_frames(6)
+    lines = harness.reader.numbers.traces["halving", "centre"]
+    question = harness.reader.lesson.named["corners"]
+    assert lines.answer(question).accepts("2.1")
+    assert harness.reader.numbers.failed == {} and harness.reader.numbers.pending == []
+    harness.click("##steps", 0.97)
+    assert harness.reader.at["centre"] == 3
+    for text, right in (("", None), ("2,2", False), ("2,1", True)):
+        harness.reader.typed["corners"] = text
+        harness.reader.check_number(question)
+        harness.run_frames(2)
+        assert harness.reader.checked["corners"] is right
+        assert (("corners", "answer") in harness.reader.shown) == (right is True)
+    harness.reader.open("halving", language="fr", page=2)
+    harness.run_frames(3)
+    assert "2,1" in harness.reader.numbers.fill("{{corners}}", harness.reader.lesson)
+
+
+def test_a_trace_that_fails_says_why_and_leaves_the_rest(harness, monkeypatch):
+    def failing(engine, lesson, traced_block):
+        raise SketchError("no such texel")
+
+    monkeypatch.setattr("playground.course.window.reader.traced", failing)
+    harness.open(2)
+    harness.run_frames(6)
+    assert harness.reader.numbers.failed["halving", "centre"] == "no such texel"
+    harness.reader.typed["corners"] = "2.1"
+    harness.reader.check_number(harness.reader.lesson.named["corners"])
+    assert "corners" not in harness.reader.checked, "there is nothing to compare with"

@@ -310,6 +310,7 @@ def judged(any_engine, monkeypatch):
         ("Shadows\n\nnumber: 128.6\n", 1.0, "right"),
         ("number:128,6 ", 1.0, "right"),
         ("number: 1\nNumber: 128.7\r\n", 1.0, "right"),
+        ("nombre: 128,6", 1.0, "right"),
         ("number: 120", 0.0, "128.6"),
         ("number:", 0.0, "no number"),
         ("128.6", 0.0, "no number"),

@@ -27,9 +27,9 @@ from playground.course.grading.report import (
     spelled_points,
 )
 from playground.course.grading.submissions import HandedIn, Submission, printable, read_submission
-from playground.course.handout import NUMBER_KEY, Assignment, assignments_of, normalised
+from playground.course.handout import Assignment, assignments_of, normalised
 from playground.course.judging import LIMIT_BYTES, Judge, cause_of, surviving
-from playground.course.library import Said, decimal, in_language, labels
+from playground.course.library import LANGUAGES, Said, decimal, in_language, labels
 from playground.course.model import Challenge, Exercise, Question, Task
 from playground.course.read import read_lesson
 from playground.course.scenes import draw
@@ -325,7 +325,8 @@ def _number_mark(task: Question, answer: Answer, text: str | None, language: str
 def _number_text(text: str) -> str:
     """Return what a student has written behind the last colon that the number belongs behind; "" for none."""
     lines = [line.strip().partition(":") for line in text[:_MAX_TOML].split("\n")]
-    texts = [value.strip() for key, _, value in lines if key.strip().casefold() == NUMBER_KEY]
+    keys = {labels("handout", code)["number_key"] for code in LANGUAGES}
+    texts = [value.strip() for key, _, value in lines if key.strip().casefold() in keys]
     return texts[-1] if texts else ""
 
 

@@ -243,7 +243,7 @@ _STYLE = (
     ".traced :is(th,td){text-align:left;vertical-align:top}"
     ".traced .beside :is(td,th){font-family:monospace}"
     ".traced .beside code{white-space:pre-wrap;background:none}"
-    ".traced .beside span{display:block}"
+    ".traced .beside td:last-child>span{display:block}"
 )
 _TO_STEP = (
     "const f=this.closest('figure');"
