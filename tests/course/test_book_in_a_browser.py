@@ -145,7 +145,7 @@ def test_paper_has_the_table_and_no_answer(page):
     assert "i = 0" in page.run(f"return {BESIDE}")
 
 
-def test_an_answer_that_is_unfolded_puts_the_value_into_the_figure(page):
+def test_an_unfolded_answer_puts_the_value_into_the_figure(page):
     page.click("#corners details.answer summary")
     assert page.run("return document.querySelector('#height tr[data-step=\"3\"] td').textContent") == "2.1"
 

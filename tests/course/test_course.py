@@ -70,14 +70,15 @@ def test_a_mistake_in_it_is_a_sentence_with_a_line(course, before, after, words)
 
 
 def test_lesson_time_adds_words_and_blocks(write_lesson):
-    """Counted by hand: two figures' worth of pictures, two series, a code, a question, a bug."""
+    """Counted by hand: two figures' worth of pictures, two series, a code, a trace, a question, a bug."""
     before = times_of(read_document(write_lesson()))
-    seconds = 15 + 30 + 30 + 15 + 30 + 120 + 30  # figure, step, slider, compare, code, break, question
+    # Figure, step, slider, compare, code, trace, break, question; one for a number is an exercise.
+    seconds = 15 + 30 + 30 + 15 + 30 + 30 + 120 + 30
     assert 60 * before.reading - seconds <= 60 + 60 * 100 / 200  # hardly 100 words
     longer = write_lesson(("A picture first.", "word " * 400))
     assert times_of(read_document(longer)).reading == before.reading + 2
     exercise = ('ask      = "Predict."', 'ask      = "' + "word " * 200 + '"')
-    assert times_of(read_document(write_lesson(exercise))).exercises == before.exercises + 1 == 14
+    assert times_of(read_document(write_lesson(exercise))).exercises == before.exercises + 1 == 15
     kernel = ('ask      = "Predict."', 'ask = "Predict."\nfile = "x.glsl"')
     assert times_of(read_document(write_lesson(kernel))).exercises == before.exercises + 2
 

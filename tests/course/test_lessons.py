@@ -12,8 +12,8 @@ import pytest
 from playground.course.document import formulas
 from playground.course.glossary import terms_of
 from playground.course.library import HERE, LANGUAGES, SOURCE, TEXTS, labels, lesson_files, lesson_names
-from playground.course.measures import Number, filled
-from playground.course.model import Break, Compare, Exercise, Figure, Prose, Slider, Steps
+from playground.course.measures import Number, filled, named_in
+from playground.course.model import Break, Compare, Exercise, Figure, Prose, Question, Slider, Steps, Trace
 from playground.course.read import read_lesson, read_lessons, status_of, summaries
 from playground.course.rules import MAX_MINUTES, broken_rules, wrong_pictures
 from playground.course.scenes import bug_region, pictures_of, with_bug
@@ -137,7 +137,13 @@ def test_bugs_are_visible_and_claims_hold(shipped, engine):
 
 def test_every_number_is_in_its_sentence(shipped):
     """What each is does not matter here: the test above computes all of them."""
-    numbers = {measure.name: Number(1.0, "1") for measure in shipped["en"].measures}
+    english = shipped["en"]
+    names = {measure.name for measure in english.measures}
+    names |= {block.name for block in english.blocks if isinstance(block, Question) and block.of}
+    traces = {block.name for block in english.blocks if isinstance(block, Trace)}
+    named = {name for text in english.texts() for name in named_in(text) if ":" in name}
+    names |= {name for name in named if name.partition(":")[0] in traces}
+    numbers = {name: Number(1.0, "1") for name in names}
     for language, lesson in shipped.items():
         for words in lesson.texts():
             assert "…" not in filled(words, numbers, language) or "…" in words
