@@ -10,20 +10,22 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from playground.engine.programs import Program
 from playground.engine.textures import make_framebuffer, release_framebuffer
-from playground.engine.trace.instrument import Traced, Varying
+from playground.engine.trace.instrument import Traced
 from playground.memo import Memo
 from playground.shader.wrap import Wrapped
 
 if TYPE_CHECKING:
     import moderngl
 
+_Floats = NDArray[np.float32]
 _MAX_PROGRAMS = 16
 _MAX_BYTES = 2**27  # of a target's textures, unless one alone takes more
 _MAX_SLOTS = 8  # outputs that every OpenGL has
-_FRAGMENT = "vec4(gl_FragCoord.zw, gl_FrontFacing ? 1.0 : 0.0, 1.0)"
+_SAME = 1e-3  # of a varying: fragments of one triangle agree so with what the derivatives say
 
 
 class Capture:
@@ -56,44 +58,56 @@ class Capture:
         ``size``: of the step's textures. ``draw`` sets what the program reads and draws into what is bound;
         the depth that is tested then is ``depth``.
         """
-        slots = [_FRAGMENT]
+        fragment = wrapped.stages["fragment"].text
+        triangle = "0.0" if _is_es(fragment) else "float(gl_PrimitiveID)"
+        slots = [f"vec4(gl_FragCoord.zw, gl_FrontFacing ? 1.0 : 0.0, 1.0 + {triangle})"]
         for varying in traced.varyings:
             texts = [varying.name]
-            if len(varying.uniforms) > 1:
+            if traced.quads and not varying.is_flat:
                 texts += [f"dFdx({varying.name})", f"dFdy({varying.name})"]
             slots += [_as_vec4(varying.type, text) for text in texts]
+        x, y = texel[0] & ~1, texel[1] & ~1
+        quad = (x, y, min(2, size[0] - x), min(2, size[1] - y))
+        own = (texel[1] & 1) * 2 + (texel[0] & 1)
         most = max(min(_MAX_BYTES // (16 * size[0] * size[1]), _MAX_SLOTS), 1)
-        values: list[np.ndarray[Any, np.dtype[np.float32]]] = []
+        values: list[_Floats] = []  # of each slot: four numbers of each of the quad's fragments
         for first in range(0, len(slots), most):
             group = slots[first : first + most]
-            program = self._program(wrapped, traced.varyings, group)
+            program = self._program(wrapped, traced.declarations, group)
             framebuffer = self._framebuffer(size, len(group), depth)
             try:
                 framebuffer.use()
-                framebuffer.scissor = (texel[0] & ~1, texel[1] & ~1, 2, 2)
+                framebuffer.scissor = quad
                 framebuffer.depth_mask = False
                 framebuffer.clear()
                 draw(program)
                 for index in range(len(group)):
-                    data = framebuffer.read((*texel, 1, 1), 4, attachment=index, alignment=1, dtype="f4")
-                    values.append(np.frombuffer(data, np.float32))
+                    data = framebuffer.read(quad, 4, attachment=index, alignment=1, dtype="f4")
+                    block = np.zeros((2, 2, 4), np.float32)
+                    block[: quad[3], : quad[2]] = np.frombuffer(data, np.float32).reshape(quad[3], quad[2], 4)
+                    values.append(block.reshape(4, 4))
             finally:
                 release_framebuffer(framebuffer)
-            if first == 0 and values[0][3] == 0.0:
+            if first == 0 and values[0][own, 3] == 0.0:
                 return None
         uniforms: dict[str, Any] = {
-            "k_at_depth": tuple(values[0][:2].tolist()),
-            "k_is_front": bool(values[0][2]),
+            "k_at_depth": tuple(values[0][own, :2].tolist()),
+            "k_is_front": bool(values[0][own, 2]),
         }
+        is_same = values[0][:, 3] == values[0][own, 3]
         rest = iter(values[1:])
         for varying in traced.varyings:
-            for name in varying.uniforms:
-                uniforms[name] = _value(varying.type, next(rest))
+            at = next(rest)
+            if not traced.quads or varying.is_flat:
+                uniforms[varying.uniform] = _value(varying.type, at[own])
+            else:
+                lanes = _lanes(at, next(rest)[own], next(rest)[own], own, is_same)
+                uniforms[varying.uniform] = [_value(varying.type, lane) for lane in lanes]
         return uniforms
 
-    def _program(self, wrapped: Wrapped, varyings: Sequence[Varying], slots: Sequence[str]) -> Program:
+    def _program(self, wrapped: Wrapped, declarations: Sequence[str], slots: Sequence[str]) -> Program:
         vertex = wrapped.stages["vertex"].text
-        text = _capture_text(wrapped.stages["fragment"].text, varyings, slots)
+        text = _capture_text(wrapped.stages["fragment"].text, declarations, slots)
         program: Program | None = self._programs.get((vertex, text))
         if program is None:
             compiled = self._ctx.program(vertex_shader=vertex, fragment_shader=text)
@@ -123,19 +137,40 @@ def _as_vec4(type_: str, text: str) -> str:
     return f"vec4({bits}{', 0.0' * (4 - count)})"
 
 
-def _value(type_: str, numbers: np.ndarray[Any, np.dtype[np.float32]]) -> Any:
+def _lanes(at: _Floats, along_x: _Floats, along_y: _Floats, own: int, is_same: NDArray[np.bool_]) -> _Floats:
+    """Return a varying's value in each fragment of a quad as that of one fragment sees them.
+
+    Where the same triangle covers the neighbour, it has just this value; elsewhere what the derivatives say.
+    """
+    lanes = np.empty_like(at)
+    for lane in range(4):
+        x, y = (lane & 1) - (own & 1), (lane >> 1) - (own >> 1)
+        with np.errstate(all="ignore"):
+            lanes[lane] = at[own] + np.float32(x) * along_x + np.float32(y) * along_y
+            # Of many instances another may lie there, with a triangle of the same number.
+            is_near = np.abs(lanes[lane] - at[lane]) <= _SAME * np.abs(at[own]) + np.abs(along_x) * _SAME
+        if is_same[lane] and is_near.all():
+            lanes[lane] = at[lane]
+    return lanes
+
+
+def _value(type_: str, numbers: _Floats) -> Any:
     count = int(type_[-1]) if type_[-1].isdigit() else 1
     whole = {"i": np.int32, "u": np.uint32}.get(type_[0])
     values = (numbers if whole is None else numbers.view(whole))[:count].tolist()
     return values[0] if count == 1 else tuple(values)
 
 
-def _capture_text(fragment: str, varyings: Sequence[Varying], slots: Sequence[str]) -> str:
+def _is_es(text: str) -> bool:
+    return "es" in text.partition("\n")[0].split()
+
+
+def _capture_text(fragment: str, declarations: Sequence[str], slots: Sequence[str]) -> str:
     """Return a fragment shader that gives some expressions of the varyings."""
     lines = [line for line in fragment.split("\n") if line.startswith(("#version", "#extension"))]
-    if any("es" in line.split() for line in lines[:1]):
+    if _is_es(fragment):
         lines.append("precision highp float; precision highp int;")
-    lines += [varying.declaration for varying in varyings]
+    lines += declarations
     lines += [f"layout(location = {slot}) out vec4 k_slot_{slot};" for slot in range(len(slots))]
     sets = [f"k_slot_{slot} = {text};" for slot, text in enumerate(slots)]
     return "\n".join([*lines, "void main() {", *sets, "}", ""])

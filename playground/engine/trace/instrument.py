@@ -70,16 +70,14 @@ _INPUTS = frozenset(("in", "varying"))
 class Varying:
     """What a vertex stage hands a fragment, and a traced shader takes from uniforms."""
 
-    name: str
+    name: str  # "place", "corners[1]", "inData.normal"
     type: str
     is_flat: bool
-    declaration: str  # in the fragment shader
 
     @property
-    def uniforms(self) -> tuple[str, ...]:
-        """Return the uniforms: its value at the chosen texel, and its derivatives unless it is flat."""
-        parts = ("at",) if self.is_flat else ("at", "x", "y")
-        return tuple(f"k_{part}_{self.name}" for part in parts)
+    def uniform(self) -> str:
+        """Return the uniform with its value; of a quad an array with those of its four fragments."""
+        return f"k_at_{'_'.join(re.findall(r'[A-Za-z0-9]+', self.name))}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +90,7 @@ class Traced:
     outputs: tuple[str, ...]  # the shader's own, in the order of their locations: names
     quads: bool
     varyings: tuple[Varying, ...]
+    declarations: tuple[str, ...]  # of the varyings, in the fragment shader
     has_mesh: bool  # then it takes gl_FragCoord.zw from k_at_depth, and gl_FrontFacing from k_is_front
     functions: tuple[str, ...]  # that are recorded
     others: tuple[str, ...]  # of the author's files, that are not
@@ -154,6 +153,8 @@ class _Writer:
         self.discards = "discard" in words
         self.quads = any(_DERIVED.fullmatch(word) for word in words) or bool(words & OLD_NAMES.keys())
         self.varyings: list[Varying] = []
+        self.globals: list[str] = []  # variables in the place of varyings
+        self.declarations: list[str] = []  # of the varyings
         self.has_old_outputs = False
         self.discard_marks: dict[int, str] = {}  # by the token of the discard
 
@@ -170,7 +171,7 @@ class _Writer:
             if isinstance(node, Declaration):
                 self._global(node, outputs)
             elif isinstance(node, InterfaceBlock) and "in" in node.qualifiers:
-                raise self._refusal(node, "its vertex stage hands it a block")
+                self._block(node)
             elif isinstance(node, Function) and node.body is not None:
                 if node.name == "main":
                     main = node
@@ -191,6 +192,7 @@ class _Writer:
             outputs=names,
             quads=self.quads,
             varyings=tuple(self.varyings),
+            declarations=tuple(self.declarations),
             has_mesh=self.has_mesh,
             functions=tuple(dict.fromkeys(recorded)),
             others=tuple(name for name in own if name not in recorded),
@@ -222,14 +224,47 @@ class _Writer:
                     self._replace(name.name, "k_coord.xy")
                 elif name.name.startswith("gl_"):
                     raise self._refusal(node, f"it declares {name.name} in its own way")
-                elif name.arrays or node.type.arrays or node.type.name not in LEAF_TYPES:
-                    raise self._refusal(node, f"its vertex stage hands it {self._source(node)}")
-                else:
-                    is_flat = "flat" in qualifiers or node.type.name[:1] in "iu"
-                    words = [OLD_NAMES.get(q, q) for q in qualifiers if not q.startswith("layout")]
-                    declaration = f"{' '.join(words)} {node.type.name} {name.name};"
-                    self.varyings.append(Varying(name.name, node.type.name, is_flat, declaration))
+            if node.names and node.names[0].name != "k_place_at":
+                self.globals += self._varying(node, qualifiers)
+                words = [OLD_NAMES.get(q, q) for q in qualifiers if not q.startswith("layout")]
+                names = ", ".join(self._source(name) for name in node.names)
+                sizes = self._sizes(node.type.arrays)
+                self.declarations.append(f"{' '.join(words)} {node.type.name}{sizes} {names};")
             self.removed.update(range(node.first, node.last))
+
+    def _varying(self, node: Declaration, qualifiers: Sequence[str], instance: str = "") -> list[str]:
+        """Note what a vertex stage hands on, and return the declarations of variables in its place."""
+        type_ = node.type.name
+        is_flat = "flat" in qualifiers or type_[:1] in "iu"
+        result = []
+        for name in node.names:
+            arrays = [*node.type.arrays, *name.arrays]
+            sizes = [self.tree.source(size) if size is not None else "" for size in arrays]
+            if len(arrays) > 1 or not all(size.isdigit() for size in sizes) or type_ not in LEAF_TYPES:
+                raise self._refusal(node, f"its vertex stage hands it {self._source(node)}")
+            parts = [f"[{index}]" for index in range(int(sizes[0]))] if sizes else [""]
+            path = f"{instance}.{name.name}" if instance else name.name
+            self.varyings += [Varying(f"{path}{part}", type_, is_flat) for part in parts]
+            result.append(f"{type_} {name.name}{self._sizes(arrays)};")
+        return result
+
+    def _block(self, node: InterfaceBlock) -> None:
+        """Note a block that a vertex stage hands on, and declare a variable in its place."""
+        if node.arrays:
+            raise self._refusal(node, f"its vertex stage hands it {self._source(node)}")
+        members = [
+            text
+            for member in node.members
+            for text in self._varying(member, [*node.qualifiers, *member.type.qualifiers], node.instance)
+        ]
+        if node.instance:
+            self.globals.append(
+                f"struct k_{node.name} {{ {' '.join(members)} }}; k_{node.name} {node.instance};"
+            )
+        else:
+            self.globals += members
+        self.declarations.append(self._source(node))
+        self.removed.update(range(node.first, node.last))
 
     def _length(self, arrays: Sequence[Node | None]) -> int:
         texts = [self.tree.source(size) for size in arrays if size is not None]
@@ -631,16 +666,16 @@ class _Writer:
         depth = "k_at_depth" if self.has_mesh else "gl_FragCoord.zw"
         return f"vec4(vec2(k_trace_texel + {self._lane()}) + 0.5, {depth})"
 
-    def _settings(self) -> list[tuple[str, str, str]]:
-        """Return type, name and value of the variables that the text reads in place of its inputs."""
-        settings = [("vec4", "k_coord", self._coordinate())]
+    def _settings(self) -> dict[str, str]:
+        """Return the values of the variables that the text reads in place of its inputs, by name."""
+        settings = {"k_coord": self._coordinate()}
+        lane = "[(int(gl_FragCoord.y) & 1) * 2 + (int(gl_FragCoord.x) & 1)]"
         for varying in self.varyings:
-            value = varying.uniforms[0]
-            if not varying.is_flat:
-                _, x, y = varying.uniforms
-                value += f" + float({self._lane()}.x) * {x} + float({self._lane()}.y) * {y}"
-            settings.append((varying.type, varying.name, value))
+            settings[varying.name] = varying.uniform + (lane if self._has_lanes(varying) else "")
         return settings
+
+    def _has_lanes(self, varying: Varying) -> bool:
+        return self.quads and not varying.is_flat
 
     def _helpers(self, outputs: int) -> str:
         """Return the declarations and functions that the recording needs."""
@@ -659,10 +694,13 @@ class _Writer:
         if self.has_mesh:
             lines.append("uniform vec2 k_at_depth; uniform bool k_is_front;")
         for varying in self.varyings:
-            lines.append(f"uniform {varying.type} {', '.join(varying.uniforms)};")
+            lanes = "[4]" if self._has_lanes(varying) else ""
+            lines.append(f"uniform {varying.type} {varying.uniform}{lanes};")
         # Values of globals may name them, except in ES, where these are constants.
-        for type_, name, value in self._settings():
-            lines.append(f"{type_} {name};" if self.is_es else f"{type_} {name} = {value};")
+        settings = {} if self.is_es else self._settings()
+        for declaration in ("vec4 k_coord;", *self.globals):
+            name = declaration.split()[1].rstrip(";")
+            lines.append(f"{declaration[:-1]} = {settings[name]};" if name in settings else declaration)
         is_live = " && !k_is_gone" if self.discards else ""
         counts = "if (!k_is_gone) ++k_count;" if self.discards else "++k_count;"
 
@@ -688,7 +726,8 @@ class _Writer:
 
     def _main(self) -> str:
         place = "ivec2(gl_FragCoord.xy)" + (" / 2" if self.quads else "")
-        sets = "".join(f"    {name} = {value};\n" for _, name, value in self._settings() if self.is_es)
+        settings = self._settings().items()
+        sets = "".join(f"    {name} = {value};\n" for name, value in settings)
         return f"""
 void main() {{
     ivec2 k_place = {place};

@@ -353,11 +353,15 @@ class Tracer:
         compiled = self._compiled(traced)
         varyings, depth_test = self._varyings(run, wrapped, traced, texel)
         real = self._real_texel(run, texel, depth_test)
+        # What binds may copy, and bind again what is bound: that must be alive.
+        formats = tuple([output.format for output in run.step.kernel.outputs])
+        self._target(formats, _FIRST_SIDE).framebuffer.use()
         self._bind(compiled.program, run)
-        compiled.program.set_all(varyings)
+        for name, value in varyings.items():
+            if name in compiled.program.uniforms:
+                compiled.program.write(name, value)
         leaves, own, count, is_gone = self._recorded(run, compiled, texel, limit)
         calls, events = rebuild(traced.places, traced.structs, leaves)
-        formats = [output.format for output in run.step.kernel.outputs]
         names = [output.name for output in run.step.kernel.outputs]
         return Trace(
             step=run.step.path,
