@@ -24,7 +24,7 @@ import typer
 from playground import rooms
 from playground._version import __version__
 from playground.allowed_files import exists
-from playground.commands import cache, doctor, library, listing, new, options
+from playground.commands import cache, doctor, library, listing, new, options, trace
 from playground.commands.arguments import Renderer, help_text
 from playground.commands.common_options import prepared, with_root
 from playground.commands.import_name import check_package
@@ -179,6 +179,7 @@ def _no_command(name: str, ctx: Any) -> str:
 for _room in rooms.modules("commands"):
     _room.add_to(app)
 app.command("list", help=listing.HELP)(listing.list_)
+app.command("trace", help=trace.HELP)(trace.trace)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("new", help=new.HELP)(new.new)
 for _group in (cache.app, library.app):

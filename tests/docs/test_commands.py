@@ -53,6 +53,7 @@ NOT_RUN = {
     r"playground reduce my-land --command .*": "is-good is the user's: test_a_command_judges_and_the_folder",
     r"playground shots report": "names the command; verify/report/test_report.py has results to give it",
     r"playground (render --video|check --json|reduce|pack|shots mutants)": "names it; with more it is run",
+    r"playground (trace|export --trace)": "names it; with more it is run",
     r"\./play lesson present .* --video .*": "takes minutes; test_present_film.py has a small one",
     r"playground bench": "takes minutes: tests/verify/bench run small parts of it",
     r"playground lesson translated": "names the command; tests/course have a translation to give it",

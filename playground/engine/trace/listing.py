@@ -55,6 +55,18 @@ def text_of(value: Value, *, short: bool = False) -> str:
     return "(" + ", ".join(text_of(part, short=short) for part in value) + ")"
 
 
+def event_text(event: Event) -> str:
+    """Return an event as a person reads it: "lit = 0.5", "free < 1.0 is true", "march returns 0.25"."""
+    match event.kind:
+        case "enter" | "leave" | "discard":
+            return f"{event.kind} {event.name}".rstrip()
+        case "return":
+            return f"{event.name} returns {text_of(event.value)}"
+        case "condition":
+            return f"{event.name} is {text_of(event.value)}"
+    return f"{event.name} = {text_of(event.value)}" if event.name else event.kind
+
+
 def heading(trace: Trace) -> str:
     """Return what a trace is of, how much it recorded, and whether its result is the texel's."""
     file = Path(next(iter(trace.files), "")).name

@@ -28,7 +28,7 @@ from playground.engine.frame import reduced
 from playground.engine.plan import LoopStep, Plan, Step, drawn_size, every_node
 from playground.engine.textures import read_picture, read_texture
 from playground.engine.trace.instrument import ALL
-from playground.engine.trace.listing import text_of
+from playground.engine.trace.listing import event_text, text_of
 from playground.engine.trace.model import Event, first_difference
 from playground.engine.unfinished import PassesUnfinished
 from playground.errors import PlaygroundError
@@ -439,17 +439,5 @@ def _sentence(now: Event | None, before: Event | None) -> str:
     if now is None or before is None:
         return f"only the {'reference' if now is None else 'new'} run goes on here"
     if (now.kind, now.name) == (before.kind, before.name):
-        return f"{_written(now)}, in the reference's run {text_of(before.value)}"
-    return f"{_written(now)}, where the reference's run has {_written(before)}"
-
-
-def _written(event: Event) -> str:
-    """Return an event as a text: "lit = 0.5"."""
-    match event.kind:
-        case "enter" | "leave" | "discard":
-            return f"{event.kind} {event.name}".rstrip()
-        case "return":
-            return f"{event.name} returns {text_of(event.value)}"
-        case "condition":
-            return f"{event.name} is {text_of(event.value)}"
-    return f"{event.name} = {text_of(event.value)}"
+        return f"{event_text(now)}, in the reference's run {text_of(before.value)}"
+    return f"{event_text(now)}, where the reference's run has {event_text(before)}"
