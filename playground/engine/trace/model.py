@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any, NamedTuple
 
 LEAF_TYPES = (
@@ -161,6 +162,8 @@ class Trace:
     others: tuple[str, ...]  # those that could be
     files: dict[str, tuple[str, ...]]  # the lines of the author's files, by path, the kernel's own first
     is_discarded: bool = False  # whether the run ended in a discard
+    # How a notebook shows it; None: as its text.
+    as_html: Callable[[Trace], str] | None = field(default=None, repr=False, compare=False)
 
     def calls_of(self, function: str) -> list[Call]:
         """Return the calls of a ``function``, in order.
@@ -208,6 +211,38 @@ class Trace:
             assert trace.first_not_finite() is None
         """
         return next((event for event in self.events if not event.is_finite), None)
+
+    def table(self) -> Any:
+        """Return all events as a ``DataFrame`` of pandas, a row each; without pandas as a list of rows.
+
+        A row has ``kind``, ``name``, ``type``, ``value``, ``function``, ``call``, ``iterations``, ``line``
+        and ``path``.
+
+            table = playground.trace("l_dot_n", "product", texel=(10, 20)).table()
+            print(len(table))
+        """
+        rows = [
+            {
+                "kind": event.kind,
+                "name": event.name,
+                "type": event.type,
+                "value": event.value,
+                "function": self.calls[event.call].function,
+                "call": event.call,
+                "iterations": event.iterations,
+                "line": event.line,
+                "path": event.path,
+            }
+            for event in self.events
+        ]
+        try:
+            pandas = import_module("pandas")
+        except ImportError:
+            return rows
+        return pandas.DataFrame(rows)
+
+    def _repr_html_(self) -> str | None:
+        return None if self.as_html is None else self.as_html(self)
 
     def _call(self, call: Call | int) -> Call:
         return self.calls[call] if isinstance(call, int) else call

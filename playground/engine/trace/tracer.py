@@ -30,6 +30,7 @@ from playground.engine.runner import Runner
 from playground.engine.sandbox import TryTexts
 from playground.engine.textures import drain, floats_in, make_framebuffer, release_framebuffer, split_format
 from playground.engine.trace.capture import Capture
+from playground.engine.trace.html import trace_html
 from playground.engine.trace.instrument import ALL, Traced, functions_of, instrument
 from playground.engine.trace.model import MAX_EVENTS, Leaf, Trace, rebuild
 from playground.engine.tuning import Stage
@@ -378,6 +379,7 @@ class Tracer:
             others=traced.others,
             files=_files(wrapped.stages["fragment"].source),
             is_discarded=is_gone,
+            as_html=trace_html,
         )
 
     def _stage(self, run: _Run) -> Stage:
