@@ -272,7 +272,8 @@ class TraceView:
             if key[0] == path:
                 linked = key in self._linked
                 heads[key[2]] = FunctionHead(key, call.index, self._number(key) + 1, len(calls), linked)
-                silent = {event.line for each in calls for event in each.events if event.path == path}
+                events = [event for each in calls for event in each.events if event.value is not None]
+                silent = {event.line for event in events if event.path == path}
                 inside |= dict.fromkeys(silent, False)
             for line, more in self._items(call, path).items():
                 items.setdefault(line, []).extend(more)
