@@ -309,7 +309,7 @@ def test_the_window_of_a_trace_draws_and_esc_closes_it(bare: Bare) -> None:
     bench.tracing.pin = 0.5, 0.3
     bare.run_frames(4)
     assert bench.tracing.view is not None and "bit for bit" in state_of(bench.tracing)[0]
-    assert {"Keep", "##iteration", "##probe"} <= set(bare.places)
+    assert {"Keep", "##slide", "##probe"} <= set(bare.places)
     bare.click("Keep")
     assert bench.tracing.beside is Beside.KEPT
     assert open_layers(bench) == ["trace"]

@@ -23,16 +23,27 @@ from playground.memo import INTERFACE
 from playground.paths import shown
 from playground.shader.syntax.tokens import tokenize
 from playground.studio import theme
-from playground.studio.draw import QUIET, Area, button, choose, fitting, fitting_path, pushed_id, styled
+from playground.studio.draw import (
+    QUIET,
+    Area,
+    button,
+    choose,
+    fitting,
+    fitting_path,
+    pushed_id,
+    styled,
+    wrapped,
+)
 from playground.studio.theme import Theme
 from playground.studio.trace.rows import FunctionHead, Item, LoopHead, Row, TraceView
 from playground.studio.trace.tracing import Beside, Tracing
+from playground.studio.widgets import slide_whole
 
 if TYPE_CHECKING:
     import moderngl
 
 _CODE = 0.52  # fraction of the width that code takes first
-_SLIDER, _SPARK = 110.0, 96.0  # [units of scale 1] widths
+_SLIDER, _SPARK = 124.0, 96.0  # [units of scale 1] widths
 _CLICK = 4.0  # that the mouse may move during a click
 _GUTTER = 5  # letters left of the code: the line's number
 _WORDS = frozenset(
@@ -148,9 +159,10 @@ class TracePanel:
 
     def _state(self, tracing: Tracing, look: Theme) -> None:
         """Draw the line that says what the trace is of, or why there is none."""
+        if tracing.view is None:
+            return
         text, ink = state_of(tracing)
-        if tracing.view is not None:
-            imgui.same_line()
+        imgui.same_line()
         with look.font(look.text, theme.SMALL):
             room = imgui.get_content_region_avail().x
             imgui.text_colored(theme.colour(ink), fitting(text.replace("\n", "  "), room))
@@ -163,8 +175,8 @@ class TracePanel:
             imgui.same_line()
             now = count - 1 if tracing.iteration is None else min(tracing.iteration, count - 1)
             imgui.set_next_item_width(imgui.get_font_size() * 10)
-            changed, number = imgui.slider_int("##step", now + 1, 1, count, f"step %d of {count}")
-            if changed:
+            number = slide_whole("##step", now + 1, (1, count), lambda n: f"step {n} of {count}")
+            if number is not None:
                 tracing.iteration = None if number == count else number - 1
 
     # ── the code ─────────────────────────────────────────────────────────────
@@ -178,6 +190,9 @@ class TracePanel:
         view = tracing.view
         if view is None:
             imgui.begin_child("code", size)
+            text, ink = state_of(tracing)
+            with wrapped():
+                imgui.text_colored(theme.colour(ink), text)
             imgui.end_child()
             return
         with look.font(look.code):
@@ -335,37 +350,22 @@ class TracePanel:
 
     def _call(self, view: TraceView, head: FunctionHead, look: Theme) -> None:
         """Draw which call of a function is shown, and what steps through them."""
-        if button("<", "the call before", small=True, enabled=head.number > 1):
-            view.choose_call(head.key, head.number - 2)
-        imgui.same_line(0, 2 * look.scale)
-        imgui.set_next_item_width(_SLIDER * look.scale)
-        changed, number = imgui.slider_int("##call", head.number, 1, head.count, f"call %d of {head.count}")
         caller = view.trace.calls[head.call].caller
         by = f", by {view.trace.calls[caller].function}" if caller is not None else ""
-        imgui.set_item_tooltip(f"{head.key[1]}: call {head.number} of {head.count}{by}")
-        if changed:
+        note = f"{head.key[1]}: call {head.number} of {head.count}{by}"
+        number = _stepper("call", head.number, head.count, note, look)
+        if number is not None:
             view.choose_call(head.key, number - 1)
-        imgui.same_line(0, 2 * look.scale)
-        if button(">", "the next call", small=True, enabled=head.number < head.count):
-            view.choose_call(head.key, head.number)
         if not head.is_linked:
             imgui.same_line()
             imgui.text_disabled("(another moment)")
 
     def _loop(self, view: TraceView, head: LoopHead, look: Theme) -> None:
         """Draw the slider over a loop's iterations, and the sparkline of one of its names."""
-        if button("<", "the iteration before", small=True, enabled=head.chosen > 0):
-            view.choose_iteration(head, head.chosen - 1)
-        imgui.same_line(0, 2 * look.scale)
-        imgui.set_next_item_width(_SLIDER * look.scale)
-        count = max(head.count, 1)
-        changed, number = imgui.slider_int("##iteration", head.chosen + 1, 1, count, f"%d of {count}")
-        imgui.set_item_tooltip(f"iteration {head.chosen + 1} of {head.count}; Ctrl+click types one")
-        if changed:
+        note = f"iteration {head.chosen + 1} of {head.count}; Ctrl+click types one"
+        number = _stepper("", head.chosen + 1, head.count, note, look)
+        if number is not None:
             view.choose_iteration(head, number - 1)
-        imgui.same_line(0, 2 * look.scale)
-        if button(">", "the next iteration", small=True, enabled=head.chosen < head.count - 1):
-            view.choose_iteration(head, head.chosen + 1)
         if head.plotted:
             imgui.same_line()
             self._sparkline(view, head, look)
@@ -448,6 +448,19 @@ class _Grid:
     line: float
     wide: float
     code: float  # width of the code
+
+
+def _stepper(word: str, number: int, count: int, note: str, look: Theme) -> int | None:
+    """Draw a slider from 1 to a count between two buttons; return the number that is chosen."""
+    chosen = number - 1 if button("<", "the one before", small=True, enabled=number > 1) else None
+    imgui.same_line(0, 2 * look.scale)
+    imgui.set_next_item_width(_SLIDER * look.scale)
+    slid = slide_whole("##slide", number, (1, max(count, 1)), lambda n: f"{word} {n} of {count}".strip())
+    imgui.set_item_tooltip(note)
+    imgui.same_line(0, 2 * look.scale)
+    if button(">", "the next one", small=True, enabled=number < count):
+        chosen = number + 1
+    return slid if slid is not None else chosen
 
 
 # ── texts ─────────────────────────────────────────────────────────────────────

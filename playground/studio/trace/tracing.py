@@ -209,7 +209,8 @@ class Tracing:
 
     def choose_pass(self, name: str) -> None:
         """Trace another pass, at its texel of the same place."""
-        self.pass_name, self._fixed, self.iteration, self.file = name, None, None, ""
+        self.pass_name, self._fixed, self.iteration = name, None, None
+        self.view, self.file, self.line = None, "", 0
 
     def open(self, file: str) -> None:
         """Show a file, at the first call in it."""
