@@ -1,7 +1,10 @@
 """Read what a vertex stage hands one fragment, so that the fragment can run again without the mesh.
 
 The step is drawn once more, with a fragment shader that gives each varying and, where derivatives count, its
-``dFdx`` and ``dFdy``. Of a draw that keeps the nearest fragment, the depth that it left says which that is.
+value in each of the quad's four fragments, whether the triangle covers them or not: what is 0 in the three
+others has that value as its difference along both axes. Where a driver takes one difference for the whole
+quad, ``dFdx`` and ``dFdy`` say what the others have, but for the last bits. Of a draw that keeps the nearest
+fragment, the depth that it left says which that is.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ from playground.engine.programs import Program
 from playground.engine.textures import make_framebuffer, release_framebuffer
 from playground.engine.trace.instrument import Traced
 from playground.memo import Memo
+from playground.shader.own_shaders import TRIANGLE
 from playground.shader.wrap import Wrapped
 
 if TYPE_CHECKING:
@@ -25,7 +29,11 @@ _Floats = NDArray[np.float32]
 _MAX_PROGRAMS = 16
 _MAX_BYTES = 2**27  # of a target's textures, unless one alone takes more
 _MAX_SLOTS = 8  # outputs that every OpenGL has
-_SAME = 1e-3  # of a varying: fragments of one triangle agree so with what the derivatives say
+_LANE = "((int(gl_FragCoord.y) & 1) * 2 + (int(gl_FragCoord.x) & 1))"
+_FINE_TEST = f"""#version 330
+out vec4 k_fine;
+void main() {{ k_fine = vec4(dFdy(dFdx({_LANE} == 0 ? 3.0 : 0.0))); }}
+"""
 
 
 class Capture:
@@ -36,6 +44,7 @@ class Capture:
         self._programs: Memo[tuple[str, str], Program] = Memo(
             "capturing programs", _MAX_PROGRAMS, dropped=lambda _, program: program.release()
         )
+        self._fine: bool | None = None
         self._size = (0, 0)  # of the textures
         self._textures: list[moderngl.Texture] = []
 
@@ -58,52 +67,71 @@ class Capture:
         ``size``: of the step's textures. ``draw`` sets what the program reads and draws into what is bound;
         the depth that is tested then is ``depth``.
         """
-        fragment = wrapped.stages["fragment"].text
-        triangle = "0.0" if _is_es(fragment) else "float(gl_PrimitiveID)"
-        slots = [f"vec4(gl_FragCoord.zw, gl_FrontFacing ? 1.0 : 0.0, 1.0 + {triangle})"]
+        slots = ["vec4(gl_FragCoord.zw, gl_FrontFacing ? 1.0 : 0.0, 1.0)"]
         for varying in traced.varyings:
-            texts = [varying.name]
-            if traced.quads and not varying.is_flat:
-                texts += [f"dFdx({varying.name})", f"dFdy({varying.name})"]
+            name, texts = varying.name, [varying.name]
+            if traced.quads and not varying.is_flat and self._is_fine():
+                masked = [
+                    f"dFdy(dFdx({_LANE} == {lane} ? {name} : {varying.type}(0.0)))" for lane in range(4)
+                ]
+                texts = [f"{sign}{text}" for sign, text in zip(("", "-", "-", ""), masked, strict=True)]
+            elif traced.quads and not varying.is_flat:
+                texts += [f"dFdx({name})", f"dFdy({name})"]
             slots += [_as_vec4(varying.type, text) for text in texts]
-        x, y = texel[0] & ~1, texel[1] & ~1
-        quad = (x, y, min(2, size[0] - x), min(2, size[1] - y))
-        own = (texel[1] & 1) * 2 + (texel[0] & 1)
+        own_x, own_y = texel[0] & 1, texel[1] & 1
         most = max(min(_MAX_BYTES // (16 * size[0] * size[1]), _MAX_SLOTS), 1)
-        values: list[_Floats] = []  # of each slot: four numbers of each of the quad's fragments
+        values: list[_Floats] = []  # of each slot
         for first in range(0, len(slots), most):
             group = slots[first : first + most]
             program = self._program(wrapped, traced.declarations, group)
             framebuffer = self._framebuffer(size, len(group), depth)
             try:
                 framebuffer.use()
-                framebuffer.scissor = quad
+                framebuffer.scissor = (texel[0] & ~1, texel[1] & ~1, 2, 2)
                 framebuffer.depth_mask = False
                 framebuffer.clear()
                 draw(program)
                 for index in range(len(group)):
-                    data = framebuffer.read(quad, 4, attachment=index, alignment=1, dtype="f4")
-                    block = np.zeros((2, 2, 4), np.float32)
-                    block[: quad[3], : quad[2]] = np.frombuffer(data, np.float32).reshape(quad[3], quad[2], 4)
-                    values.append(block.reshape(4, 4))
+                    data = framebuffer.read((*texel, 1, 1), 4, attachment=index, alignment=1, dtype="f4")
+                    values.append(np.frombuffer(data, np.float32))
             finally:
                 release_framebuffer(framebuffer)
-            if first == 0 and values[0][own, 3] == 0.0:
+            if first == 0 and values[0][3] == 0.0:
                 return None
         uniforms: dict[str, Any] = {
-            "k_at_depth": tuple(values[0][own, :2].tolist()),
-            "k_is_front": bool(values[0][own, 2]),
+            "k_at_depth": tuple(values[0][:2].tolist()),
+            "k_is_front": bool(values[0][2]),
         }
-        is_same = values[0][:, 3] == values[0][own, 3]
         rest = iter(values[1:])
         for varying in traced.varyings:
-            at = next(rest)
+            type_ = varying.type
             if not traced.quads or varying.is_flat:
-                uniforms[varying.uniform] = _value(varying.type, at[own])
+                uniforms[varying.uniform] = _value(type_, next(rest))
+            elif self._is_fine():
+                uniforms[varying.uniform] = [_value(type_, next(rest)) for _ in range(4)]
             else:
-                lanes = _lanes(at, next(rest)[own], next(rest)[own], own, is_same)
-                uniforms[varying.uniform] = [_value(varying.type, lane) for lane in lanes]
+                at, along_x, along_y = next(rest), next(rest), next(rest)
+                uniforms[varying.uniform] = [
+                    _value(type_, at + np.float32(x - own_x) * along_x + np.float32(y - own_y) * along_y)
+                    for y in range(2)
+                    for x in range(2)
+                ]
         return uniforms
+
+    def _is_fine(self) -> bool:
+        """Return whether each row and each column of a quad has a difference of its own here."""
+        if self._fine is None:
+            program = self._ctx.program(vertex_shader=TRIANGLE, fragment_shader=_FINE_TEST)
+            filled, texture = Program(self._ctx, program), self._ctx.texture((2, 2), 4, dtype="f4")
+            framebuffer = make_framebuffer(self._ctx, [texture])
+            framebuffer.use()
+            filled.fill()
+            numbers = np.frombuffer(framebuffer.read(components=4, dtype="f4"), np.float32)
+            self._fine = bool((numbers == 3.0).all())
+            release_framebuffer(framebuffer)
+            texture.release()
+            filled.release()
+        return self._fine
 
     def _program(self, wrapped: Wrapped, declarations: Sequence[str], slots: Sequence[str]) -> Program:
         vertex = wrapped.stages["vertex"].text
@@ -135,23 +163,6 @@ def _as_vec4(type_: str, text: str) -> str:
     count = int(type_[-1]) if type_[-1].isdigit() else 1
     bits = {"i": f"intBitsToFloat({text})", "u": f"uintBitsToFloat({text})"}.get(type_[0], text)
     return f"vec4({bits}{', 0.0' * (4 - count)})"
-
-
-def _lanes(at: _Floats, along_x: _Floats, along_y: _Floats, own: int, is_same: NDArray[np.bool_]) -> _Floats:
-    """Return a varying's value in each fragment of a quad as that of one fragment sees them.
-
-    Where the same triangle covers the neighbour, it has just this value; elsewhere what the derivatives say.
-    """
-    lanes = np.empty_like(at)
-    for lane in range(4):
-        x, y = (lane & 1) - (own & 1), (lane >> 1) - (own >> 1)
-        with np.errstate(all="ignore"):
-            lanes[lane] = at[own] + np.float32(x) * along_x + np.float32(y) * along_y
-            # Of many instances another may lie there, with a triangle of the same number.
-            is_near = np.abs(lanes[lane] - at[lane]) <= _SAME * np.abs(at[own]) + np.abs(along_x) * _SAME
-        if is_same[lane] and is_near.all():
-            lanes[lane] = at[lane]
-    return lanes
 
 
 def _value(type_: str, numbers: _Floats) -> Any:
