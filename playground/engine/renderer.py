@@ -271,10 +271,10 @@ class Renderer:
     def run_apart(self, plan: Plan, refs: Sequence[Ref]) -> FrameRecord:
         """Run what some textures of a plan need apart from the frames, and return the record of that.
 
-        The last frame, what ran for it and how often all passes ran stay as they were.
+        It runs to its end. The last frame, what ran for it and how often all passes ran stay as they were.
         """
-        before, runs, keeps = self.record, self.runs.copy(), self.options.keeps
-        self.options.keeps = True
+        before, runs, options = self.record, self.runs.copy(), self.options
+        self.options = RunOptions()
         try:
             self._run(plan, refs)
             record = self.record
@@ -282,7 +282,7 @@ class Renderer:
                 self.recall(before.plan)
             return record
         finally:
-            self.record, self.runs, self.options.keeps = before, runs, keeps
+            self.record, self.runs, self.options = before, runs, options
 
     def picture_hash(self, plan: Plan) -> str:
         """Return a hash of what a plan's picture is drawn from, the same on every machine.
