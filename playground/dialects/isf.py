@@ -32,11 +32,11 @@ from playground.errors import Diagnostic, ShaderError, nearest
 from playground.json_text import long_number
 from playground.paths import shown
 from playground.shader import expressions
+from playground.shader.conditions import live_source
 from playground.shader.declarations import is_declared, uniforms
 from playground.shader.expressions import MAX_LETTERS, ExpressionError
 from playground.shader.header import with_axes
 from playground.shader.parameter import Parameter, Sampling, spell
-from playground.shader.preprocessor import live_source
 from playground.shader.source import Line, SourceText
 from playground.shader.syntax.tokens import as_written
 from playground.shader.widgets import Widget

@@ -17,9 +17,9 @@ from functools import cached_property
 from playground.dialects import shadertoy
 from playground.dialects.es import Rewritten, directives, rewritten, version_of
 from playground.dialects.foreign import VIEW, Files, Made, Names, Rules, Shader, ShaderChannel
+from playground.shader.conditions import WEBGL, Conditions, live_source, macros_of
 from playground.shader.declarations import uniforms, vertex_outputs
 from playground.shader.parameter import Sampling
-from playground.shader.preprocessor import WEBGL, Conditions, live_source, macros_of
 from playground.shader.reserved_names import DEPTH, PLAIN_UNIFORMS, SIZES, VALUE
 from playground.shader.source import SourceText
 from playground.shader.syntax.tokens import is_named

@@ -43,10 +43,10 @@ from playground.dialects.foreign import (
 from playground.errors import ShaderError, SketchError, nearest
 from playground.json_text import read_json
 from playground.paths import shown
+from playground.shader.conditions import WEBGL_2, live_code, live_source
 from playground.shader.declarations import is_declared
 from playground.shader.header import title_of
 from playground.shader.parameter import Sampling, spell
-from playground.shader.preprocessor import WEBGL_2, live_code, live_source
 from playground.shader.reserved_names import SIZES
 from playground.shader.source import Line, SourceText
 from playground.shader.syntax.nodes import Function, Name

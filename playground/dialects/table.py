@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 
 from playground.errors import Diagnostic
 from playground.memo import FILES
+from playground.shader.conditions import WEBGL_2, code_of, live_code
 from playground.shader.dialect import OWN, Dialects, Read, has_own_pragma
 from playground.shader.kernel import ForeignShader, Graph
-from playground.shader.preprocessor import WEBGL_2, code_of, live_code
 from playground.shader.source import read_text
 from playground.shader.syntax.tokens import is_named
 

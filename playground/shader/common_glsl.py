@@ -23,8 +23,8 @@ from pathlib import Path
 
 from playground.errors import Diagnostic
 from playground.paths import GLSL
+from playground.shader.conditions import WEBGL_2
 from playground.shader.kernel import ComputeVariant, CpuSource, Kernel, PlainCompute, PlainFragment
-from playground.shader.preprocessor import WEBGL_2
 from playground.shader.reserved_names import BUILT_IN_FUNCTIONS
 from playground.shader.syntax.nodes import (
     Assign,

@@ -41,7 +41,7 @@ class Dialects:
 
         One that is not in ``names`` is known, and not drawn.
         """
-        from playground.shader.preprocessor import code_of
+        from playground.shader.conditions import code_of
 
         code = code_of(text)
         lines = code.split("\n")

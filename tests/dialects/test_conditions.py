@@ -9,7 +9,7 @@ import subprocess
 
 import pytest
 
-from playground.shader.preprocessor import Conditions
+from playground.shader.conditions import Conditions
 
 
 def live(text: str, **defined: str) -> list[str]:

@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from playground.memo import TEXTS
-from playground.shader.preprocessor import without_guards
+from playground.shader.conditions import without_guards
 from playground.shader.source import Line
 from playground.shader.syntax import nodes
 from playground.shader.syntax.parser import Tree, parse

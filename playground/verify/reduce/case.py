@@ -19,9 +19,9 @@ from playground.engine.planner import make_plan
 from playground.errors import PlaygroundError, SketchError
 from playground.memo import PickledByFields
 from playground.paths import shown
+from playground.shader.conditions import without_guards
 from playground.shader.dialect import dialects
 from playground.shader.header import note_at, parse_kernel
-from playground.shader.preprocessor import without_guards
 from playground.shader.reserved_names import MATCHES, WIRED
 from playground.shader.source import SourceText, read_source, read_source_and_origin
 from playground.sketch.flat import Ref, Source
