@@ -112,7 +112,7 @@ def test_what_a_vertex_shader_gives():
         "out vec2 uv;": "uv = k_share;",
         "out vec2 other;": "other = vec2(0.0);",
         "flat out ivec2 which;": "which = ivec2(0);",
-        "layout(location = 2) out vec4 v_color;": "v_color = vec4(1.0);",
+        "layout(location=2) out vec4 v_color;": "v_color = vec4(1.0);",
         "out vec2 many[3];": "for (int k_i = 0; k_i < many.length(); ++k_i) many[k_i] = vec2(0.0);",
         "out Block { vec3 v_normal; vec2 at; } inside;": (
             "inside.v_normal = vec3(0.0, 0.0, 1.0); inside.at = vec2(0.0);"
