@@ -19,7 +19,7 @@ from playground.shader.syntax import nodes
 from playground.shader.syntax.parser import Tree, parse
 from playground.shader.syntax.preprocessor import preprocess
 from playground.shader.syntax.symbols import symbols_of
-from playground.shader.syntax.tokens import Token, tokenize
+from playground.shader.syntax.tokens import Token, edited, tokenize
 from playground.sketch.model import Parameter, Value
 
 _CONDITIONS = ("if", "ifdef", "ifndef", "else", "elif", "endif", "undef")
@@ -140,13 +140,6 @@ _OUTSIDE = ("function", "struct", "variable", "uniform", "block")
 def declaration_of(text: str, *names: str, is_macro: bool = False) -> Declaration:
     """Return a declaration of our own, which may end in a comment."""
     return Declaration(names, text, is_macro)
-
-
-def edited(text: str, edits: Iterable[tuple[int, int, str]]) -> str:
-    """Return a text with other parts from one place to another; none overlap."""
-    for start, end, new in sorted(set(edits), reverse=True):
-        text = text[:start] + new + text[end:]
-    return text
 
 
 def _named(tokens: Iterable[Token]) -> Iterator[Token]:

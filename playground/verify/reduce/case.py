@@ -24,6 +24,7 @@ from playground.shader.dialect import dialects
 from playground.shader.header import note_at, parse_kernel
 from playground.shader.reserved_names import MATCHES, WIRED
 from playground.shader.source import SourceText, read_source, read_source_and_origin
+from playground.shader.syntax.tokens import edited
 from playground.sketch.flat import Ref, Source
 from playground.sketch.map_sketch import USE
 from playground.sketch.model import (
@@ -37,7 +38,7 @@ from playground.sketch.model import (
     Value,
 )
 from playground.sketch.variants import NAME, Verified, active_variant, content_of, written
-from playground.verify.reduce.edits import edited, read, tidy, uniforms_of
+from playground.verify.reduce.edits import read, tidy, uniforms_of
 
 # ── the record of fast variants: what is reduced runs without being verified ─
 

@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cached_property, partial
-from typing import NamedTuple
+from functools import cached_property
 
 from playground.memo import TEXTS
 from playground.shader.kernel import Output
@@ -46,6 +45,7 @@ from playground.shader.syntax.nodes import (
     Method,
     Name,
     Node,
+    Parameter,
     Parenthesized,
     Struct,
     Switch,
@@ -57,7 +57,7 @@ from playground.shader.syntax.nodes import (
 )
 from playground.shader.syntax.parser import PRECEDENCE, Tree, parse
 from playground.shader.syntax.symbols import Symbol, Symbols, resolve
-from playground.shader.syntax.tokens import Token, tokenize
+from playground.shader.syntax.tokens import Comment, Edit, Token, edited, tokenize
 from playground.shader.syntax.types import (
     UNKNOWN,
     ExpressionType,
@@ -91,7 +91,7 @@ def token_count(text: str) -> int:
 
 
 class _Printer:
-    def __init__(self, tokens: Sequence[Token], notes: Sequence[NamedTuple]) -> None:
+    def __init__(self, tokens: Sequence[Token], notes: Sequence[Comment]) -> None:
         self._tokens = tokens
         self._notes = list(reversed(notes))  # the next one last
         self._lines: list[str] = []
@@ -127,7 +127,7 @@ class _Printer:
                 self._end()
                 brackets = 0
         self._end()
-        self._annotate(self._tokens[-1].end + len(self._lines[-1]) + 1 if self._notes else 0, every=True)
+        self._annotate(None)
         return self._lines
 
     def _end(self) -> None:
@@ -137,13 +137,12 @@ class _Printer:
             self._lines.append("    " * max(shift, 0) + "".join(self._words))
         self._words = []
 
-    def _annotate(self, place: int, *, every: bool = False) -> None:
-        """Append the annotations before a place to the uniform above, on one line."""
-        while self._notes and (every or self._notes[-1].start < place):  # type: ignore[attr-defined]
-            note = self._notes.pop().text[3:].strip()  # type: ignore[attr-defined]
-            if self._uniform == len(self._lines) - 1 >= 0 and not self._words:
-                mark = " " if "//!" in self._lines[-1] else "  //! "
-                self._lines[-1] += f"{mark}{note}" if note else ""
+    def _annotate(self, place: int | None) -> None:
+        """Append the annotations before a place, or all, to the uniform above, on one line."""
+        while self._notes and (place is None or self._notes[-1].start < place):
+            note = self._notes.pop().text[3:].strip()
+            if note and not self._words and self._uniform == len(self._lines) - 1 >= 0:
+                self._lines[-1] += f"{' ' if '//!' in self._lines[-1] else '  //! '}{note}"
 
     def _goes_on(self, index: int) -> bool:
         """Return whether a closing brace's line does: in front of ``;``, or of a name as in ``} light;``."""
@@ -176,9 +175,6 @@ NUMBERS = (0, 1)
 NUMBERS_WITHOUT_ZERO = (1,)
 """The same where a zero could itself bring about what is looked for: a whole 0 becomes 0.0 in a division."""
 
-Edit = tuple[int, int, str]
-"""Where a part of a text begins and ends, and what takes its place."""
-
 _ARITHMETIC = frozenset("+-*/")
 _ENTRY_POINTS = frozenset("kernel visit vertex fragment main mainImage".split())
 _PRIMARY, _POSTFIX_OPERAND, _UNARY, _ARGUMENT = 14, 13, 12, 0  # beside the parser's levels of operators
@@ -188,14 +184,6 @@ _OUTPUTS = {"modf": (1,), "frexp": (1,), "uaddCarry": (2,), "usubBorrow": (2,)} 
 _OUTPUT = re.compile(r'\boutput\s*=\s*"([^"]*)"')
 _OPTION = re.compile(r',?\s*\b(\w+)\s*=\s*("[^"]*"|\d+)')
 _ROLE = re.compile(r"\w+(?:\([^)]*\))?")
-
-
-def edited(text: str, edits: Iterable[Edit]) -> str:
-    """Return a text with edits, none of which overlap."""
-    for start, end, new in sorted(set(edits), reverse=True):
-        apart = " " if new[:1] in ("+", "-") and text[start - 1 : start] == new[:1] else ""
-        text = f"{text[:start]}{apart}{new}{text[end:]}"
-    return text
 
 
 def outputs_of(text: str) -> list[Output]:
@@ -347,6 +335,14 @@ class Candidates:
     def _type_of(self, node: Node) -> ExpressionType:
         return self._types.of(node)
 
+    def _symbol_of(self, name: Name) -> Symbol | None:
+        return self._symbols.symbol_at.get(name.first)
+
+    @cached_property
+    def _changed(self) -> set[Symbol | None]:
+        """What expressions write, or parts of it."""
+        return {self._symbol_of(one) for one in self._written if isinstance(one, Name)}
+
     @cached_property
     def _types(self) -> ExpressionTypes:
         names = {one.name for one in self._symbols.symbols if one.kind == "uniform"}
@@ -364,17 +360,14 @@ class Candidates:
     @cached_property
     def _values(self) -> set[Node]:
         """The expressions that are read, but sizes of arrays and labels of cases."""
-        values: set[Node] = set()
-        stack: list[Node] = list(self._tree.declarations)
-        while stack:
-            node = stack.pop()
-            if isinstance(node, _EXPRESSIONS) and node not in self._written:
-                values.add(node)
-            parts = list(children(node))
-            if isinstance(node, Type | Declarator):
-                parts = [node.value] if isinstance(node, Declarator) and node.value is not None else []
-            stack += [] if isinstance(node, Case) else parts
-        return values
+        fixed: list[Node] = []
+        for node in walk(*self._tree.declarations):
+            if isinstance(node, Type | Declarator | Parameter | InterfaceBlock):
+                fixed += [size for size in node.arrays if size is not None]
+            elif isinstance(node, Case):
+                fixed += children(node)
+        read: set[Node] = {one for one in walk(*self._tree.declarations) if isinstance(one, _EXPRESSIONS)}
+        return read - self._written - set(walk(*fixed))
 
     @cached_property
     def _written(self) -> set[Node]:
@@ -407,84 +400,77 @@ class Candidates:
     @cached_property
     def _loop_conditions(self) -> set[Node]:
         """What makes a loop end: with a literal in its place, it might not."""
-        changed = {self._symbols.symbol_at.get(one.first) for one in self._written if isinstance(one, Name)}
-        parts: set[Node] = set()
-        for node in walk(*self._tree.declarations):
-            if isinstance(node, For | While | Do):
-                parts |= {node.step} if isinstance(node, For) and node.step is not None else set()
-                for part in walk(node.condition) if node.condition is not None else ():
-                    names = (one for one in walk(part) if isinstance(one, Name))
-                    if any(self._symbols.symbol_at.get(one.first) in changed for one in names):
-                        parts.add(part)
-        return parts
+        loops = [one for one in walk(*self._tree.declarations) if isinstance(one, For | While | Do)]
+        conditions = [loop.condition for loop in loops if loop.condition is not None]
+        return {loop.step for loop in loops if isinstance(loop, For) and loop.step is not None} | {
+            part
+            for part in walk(*conditions)
+            if any(self._symbol_of(one) in self._changed for one in walk(part) if isinstance(one, Name))
+        }
 
     @cached_property
     def undefined(self) -> frozenset[str]:
-        """The variables that are never given a value, and the functions that return none."""
-        set_ = {self._symbols.symbol_at.get(one.first) for one in self._written if isinstance(one, Name)}
+        """The variables that are read but never given a value, and the functions that return none.
+
+        What GLSL leaves undefined, drivers fill in as they like, and no failure of it is a driver's. A
+        variable that a function may write may be given its value there.
+        """
         names = {
-            symbol.name
-            for symbol in self._symbols.symbols
-            if symbol not in set_ and _begins_undefined(symbol)
+            one.name for one in self._symbols.symbols if _begins_undefined(one) and one not in self._changed
         }
-        functions = (node for node in self._tree.declarations if isinstance(node, Function) and node.body)
-        return frozenset(
-            names
-            | {f"{one.name}()" for one in functions if one.type.name != "void" and not _returns(one.body)}
-        )
+        functions = (one for one in self._tree.declarations if isinstance(one, Function) and one.body)
+        unreturned = (one for one in functions if one.type.name != "void" and not _returns(one.body))
+        return frozenset(names | {f"{one.name}()" for one in unreturned})
+
+    @property
+    def undeclared(self) -> frozenset[str]:
+        """The names that neither the text nor GLSL nor the engine declares."""
+        tokens = self._tree.tokens
+        names = {tokens[one.token].text for one in self._symbols.references if one.symbol is None}
+        prefixes = (WIRED, MATCHES, TOWARDS, "previous", "gl_")
+        return frozenset(name for name in names - GLSL_WORDS - GIVEN.keys() if not name.startswith(prefixes))
 
     # ── variables and functions ──────────────────────────────────────────────
 
     def inlined(self) -> Iterator[str]:
         """Yield the text with one variable less: its value in its place, where that makes it smaller."""
         for node in walk(*self._tree.declarations):
-            if isinstance(node, Declaration) and len(node.names) == 1 and node.names[0].value is not None:
-                symbol = self._symbols.symbol_at.get(node.names[0].at)
-                place = self._place(node.first, node.last)
-                if symbol is not None and place and symbol.kind in ("local", "variable"):
-                    yield from self._inlinings(node, symbol, place)
+            if not isinstance(node, Declaration) or len(node.names) != 1 or node.names[0].value is None:
+                continue
+            symbol = self._symbols.symbol_at.get(node.names[0].at)
+            place = self._place(node.first, node.last)
+            if symbol is None or place is None or symbol.kind not in ("local", "variable"):
+                continue
+            for edits in (self._overwritten(node, symbol), self._replaced(symbol, node.names[0].value)):
+                text = edited(self.text, [*edits, (*place, "")]) if edits else self.text
+                if token_count(text) < token_count(self.text):
+                    yield text
 
-    def _inlinings(self, node: Declaration, symbol: Symbol, place: tuple[int, int]) -> Iterator[str]:
-        value = node.names[0].value
-        assert value is not None
-        if (following := self._following(node)) is not None and isinstance(following, Expression):
-            assign = following.value
-            if isinstance(assign, Assign) and assign.operator == "=" and isinstance(assign.target, Name):
-                # What is overwritten at once need not be set.
-                own = self._place(following.first, following.last)
-                read = [one for one in walk(assign.value) if isinstance(one, Name)]
-                is_same = self._symbols.symbol_at.get(assign.target.first) is symbol
-                if is_same and own and symbol not in {self._symbols.symbol_at.get(n.first) for n in read}:
-                    start = self._tree.span(value)[0]
-                    new = self._source(assign.value)
-                    yield edited(self.text, [(start, self._tree.span(value)[1], new), (*own, "")])
+    def _overwritten(self, node: Declaration, symbol: Symbol) -> list[Edit]:
+        """Return the edits that declare a variable where it is set, if that is in the next statement."""
+        parent = self._parents.get(node)
+        rest = parent.statements[parent.statements.index(node) + 1 :] if isinstance(parent, Block) else []
+        assign = rest[0].value if rest and isinstance(rest[0], Expression) else None
+        if not isinstance(assign, Assign) or assign.operator != "=" or not isinstance(assign.target, Name):
+            return []
+        names = [one for one in walk(assign.value) if isinstance(one, Name)]
+        place = self._place(assign.first, assign.first + 1)
+        if self._symbol_of(assign.target) is not symbol or symbol in map(self._symbol_of, names) or not place:
+            return []
+        return [(place[0], place[0], f"{self._source(node.type)} ")]
+
+    def _replaced(self, symbol: Symbol, value: Node) -> list[Edit]:
+        """Return the edits that put a value in the place of a variable; none where that cannot be."""
         uses = [self._name_at.get(token) for token in self._uses.get(symbol, ())]
         names = [name for name in uses if name is not None and name not in self._written]
-        if not uses or len(names) < len(uses):
-            return
-        edits: list[Edit] = [(*place, "")]
-        source = self._source(value)
-        declared = symbol.type, symbol.arrays
-        if self._type_of(value)[0] and self._type_of(value) != declared and not symbol.arrays:
-            source = f"{symbol.type}({source})"
-        is_loose = "(" not in source[: len(symbol.type) + 1] or self._type_of(value) == declared
-        for name in names:
-            there = self._place(name.first, name.last)
-            if there is None:
-                return
-            loose = is_loose and _precedence(value) < _precedence_in(self._parents.get(name), name)
-            edits.append((*there, f"({source})" if loose else source))
-        text = edited(self.text, edits)
-        if token_count(text) < token_count(self.text):
-            yield text
-
-    def _following(self, node: Node) -> Node | None:
-        """Return the statement behind one."""
-        parent = self._parents.get(node)
-        if not isinstance(parent, Block):
-            return None
-        index = parent.statements.index(node)
-        return next(iter(parent.statements[index + 1 : index + 2]), None)
+        places = [self._place(name.first, name.last) for name in names]
+        if len(names) < len(uses) or None in places:
+            return []
+        of_type = self._type_of(value)
+        is_converted = bool(of_type[0]) and of_type != (symbol.type, symbol.arrays)
+        whole = f"{symbol.type}({self._source(value)})"
+        texts = (whole if is_converted else self._fitting(value, name) for name in names)
+        return [(*place, text) for place, text in zip(places, texts, strict=True) if place]
 
     @cached_property
     def _name_at(self) -> dict[int, Name]:
@@ -492,19 +478,19 @@ class Candidates:
 
     def without_parameter(self) -> Iterator[str]:
         """Yield the text without one parameter that a function does not read, nor its calls' arguments."""
-        functions = self._symbols.functions()
-        for symbol in functions:
-            function = symbol.node
-            assert isinstance(function, Function)
-            same = [one for one in functions if one.name == symbol.name]
-            if symbol.name in _ENTRY_POINTS or function.body is None:
+        functions = [one.node for one in self._symbols.functions() if isinstance(one.node, Function)]
+        for function in functions:
+            same = [one for one in functions if one.name == function.name]
+            counts = {len(one.parameters) for one in same}
+            if function.name in _ENTRY_POINTS or not function.body or len(counts) > 1:
                 continue
-            if any(len(one.node.parameters) != len(function.parameters) for one in same):  # type: ignore[attr-defined]
-                continue
-            if sum(one.node.body is not None for one in same) > 1:  # type: ignore[attr-defined]
-                continue
-            calls = [site.node.arguments for site in self._symbols.calls if site.node.name == symbol.name]
-            lists = [*(one.node.parameters for one in same), *calls]  # type: ignore[attr-defined]
+            if sum(one.body is not None for one in same) > 1:
+                continue  # overloaded
+            calls = [site.node for site in self._symbols.calls if site.node.name == function.name]
+            lists: list[Sequence[Node]] = [
+                *(one.parameters for one in same),
+                *(one.arguments for one in calls),
+            ]
             for number, parameter in enumerate(function.parameters):
                 own = self._symbols.symbol_at.get(parameter.at) if parameter.name else None
                 places = [self._item_place(row, number) for row in lists]
@@ -536,58 +522,62 @@ class Candidates:
 
     def without_unused(self) -> Iterator[str]:
         """Yield the text without all that nothing reads, then without each of it."""
-        edits = list(self._unused())
-        if len(edits) > 1:
-            yield edited(self.text, [edit for group in edits for edit in group])
-        yield from (edited(self.text, group) for group in edits)
+        groups = list(self._unused())
+        if len(groups) > 1:
+            yield self._without(place for group in groups for place in group)
+        yield from map(self._without, groups)
 
-    def _unused(self) -> Iterator[list[Edit]]:
-        names = {token.text for token in self._tree.tokens}
+    def _without(self, places: Iterable[tuple[int, int]]) -> str:
+        return edited(self.text, [(*place, "") for place in _merged(places)])
+
+    def _unused(self) -> Iterator[list[tuple[int, int]]]:
+        """Yield the places of each thing that nothing reads: where it is declared, and set."""
+        preprocessed = self._tree.preprocessed
         called = {site.node.name for site in self._symbols.calls} | _ENTRY_POINTS
         for top in self._tree.declarations:
             if isinstance(top, Function) and top.name not in called:
-                if (place := self._place(top.first, top.last)) is not None:
-                    yield [(*place, "")]
-                continue
-            for node in walk(top):
-                if isinstance(node, Declaration) and node.names:
+                place = self._place(top.first, top.last)
+                yield from [[place]] if place else []
+            else:
+                declared = [node for node in walk(top) if isinstance(node, Declaration) and node.type.name]
+                for node in declared:
                     yield from self._unused_names(node)
-        for macro in self._tree.preprocessed.macros:
-            expanded = {one.name for one in self._tree.preprocessed.expansions}
-            if macro.start >= 0 and macro.name not in expanded | names:
-                bodies = (one.body for one in self._tree.preprocessed.macros)
-                if not any(token.text == macro.name for body in bodies for token in body):
-                    yield [(macro.start, macro.end, "")]
+        named = {one.name for one in preprocessed.expansions} | {one.text for one in self._tree.tokens}
+        named |= {token.text for macro in preprocessed.macros for token in macro.body}
+        for macro in preprocessed.macros:
+            if macro.start >= 0 and macro.name not in named:
+                yield [(macro.start, macro.end)]
 
-    def _unused_names(self, node: Declaration) -> Iterator[list[Edit]]:
-        symbols = [self._symbols.symbol_at.get(one.at) for one in node.names]
-        parent = self._parents.get(node)
-        if isinstance(parent, If | While | Do | For) or not node.type.name:
-            return
-        for number, symbol in enumerate(symbols):
+    def _unused_names(self, node: Declaration) -> Iterator[list[tuple[int, int]]]:
+        groups: list[list[tuple[int, int]]] = []
+        for number, one in enumerate(node.names):
+            symbol = self._symbols.symbol_at.get(one.at)
             if symbol is None or symbol.kind not in ("local", "variable", "uniform"):
                 continue
-            places: list[tuple[int, int] | None] = []
-            for token in self._uses.get(symbol, ()):
-                statement = self._setting(token)
-                places.append(self._place(statement.first, statement.last) if statement else None)
-            own = node if len(node.names) == 1 else None
-            places.append(self._place(own.first, own.last) if own else self._item_place(node.names, number))
+            statements = [self._setting(token) for token in self._uses.get(symbol, ())]
+            places = [self._place(each.first, each.last) if each else None for each in statements]
+            places.append(self._item_place(node.names, number))
             if None not in places:
-                yield [(*place, "") for place in dict.fromkeys(places) if place]
+                groups.append([place for place in places if place])
+        whole = self._place(node.first, node.last)
+        struct = node.type.struct
+        is_used = struct is not None and self._symbols.symbol_at.get(struct.at) in self._uses
+        if len(groups) == len(node.names) and whole and not is_used:
+            yield [place for group in groups for place in group[:-1]] + [whole]
+        else:
+            yield from groups
 
     def _setting(self, token: int) -> Expression | None:
-        """Return the statement that does nothing but set the variable named by a token."""
+        """Return the statement that does nothing but set the variable named by a token, or a part of it."""
         node: Node | None = self._name_at.get(token)
-        while isinstance(parent := self._parents.get(node) if node else None, Member | Index):
-            if parent.base is not node:
-                return None
-            node = parent
+        parent = self._parents.get(node) if node else None
+        while isinstance(parent, Member | Index) and parent.base is node:
+            node, parent = parent, self._parents.get(parent)
         if not isinstance(parent, Assign) or parent.target is not node:
             return None
         statement = self._parents.get(parent)
-        in_list = isinstance(statement, Expression) and isinstance(self._parents.get(statement), Block)
-        return statement if in_list and isinstance(statement, Expression) else None
+        is_in_block = isinstance(statement, Expression) and isinstance(self._parents.get(statement), Block)
+        return statement if isinstance(statement, Expression) and is_in_block else None
 
     # ── statements ───────────────────────────────────────────────────────────
 
@@ -602,15 +592,14 @@ class Candidates:
 
     def _inside(self, node: Node) -> Iterator[str]:
         in_block = isinstance(self._parents.get(node), Block)
-        source = partial(self._bare if in_block else self._tree.source)
+        source = self._bare if in_block else self._source
         if isinstance(node, Block) and in_block:
             yield self._bare(node)
         elif isinstance(node, If):
             yield source(node.yes)
             if node.no is not None:
                 yield source(node.no)
-                start = self._tree.span(node)[0]
-                yield self.text[start : self._tree.span(node.yes)[1]]
+                yield self.text[self._tree.span(node)[0] : self._tree.span(node.yes)[1]]
         elif isinstance(node, For) and not _jumps(node.body) and not isinstance(node.start, Empty):
             both = f"{self._source(node.start)} {self._bare(node.body)}"
             yield both if in_block else f"{{ {both} }}"
@@ -666,7 +655,7 @@ class Candidates:
 
         A parameter that is not among them has its default.
         """
-        notes = {id(declaration): note for declaration, note in self._annotated()}
+        notes = dict(self._annotated())
         for node in self._tree.declarations:
             if not (isinstance(node, Declaration) and _is_uniform(node) and len(node.names) == 1):
                 continue
@@ -674,10 +663,10 @@ class Candidates:
             default = self._source(one.value) if one.value is not None else ""
             value = values.get(one.name, default)
             if value and is_built_in(node.type.name) and (place := self._place(node.first, node.last)):
-                end = notes[id(node)].end if id(node) in notes else place[1]
+                end = notes[node].end if node in notes else place[1]
                 yield edited(self.text, [(place[0], end, f"const {node.type.name} {one.name} = {value};")])
 
-    def _annotated(self) -> Iterator[tuple[Declaration, Token]]:
+    def _annotated(self) -> Iterator[tuple[Node, Comment]]:
         """Yield the uniforms that have an annotation behind them, with it."""
         notes = [one for one in self._tree.preprocessed.comments if one.text.startswith("//!")]
         for node in self._tree.declarations:
@@ -685,7 +674,7 @@ class Candidates:
                 end = self._tree.span(node)[1]
                 note = next((one for one in notes if one.start >= end), None)
                 if note is not None and not self.text[end : note.start].strip():
-                    yield node, note  # type: ignore[misc]
+                    yield node, note
 
     # ── places ───────────────────────────────────────────────────────────────
 
@@ -842,27 +831,6 @@ def read(text: str) -> Symbols:
     return resolve(parse(text, {stage: ""}))
 
 
-# ── what a text lacks ────────────────────────────────────────────────────────
-
-
 def uniforms_of(text: str) -> dict[str, str]:
     """Return the types of a text's uniforms by their names."""
     return {one.name: one.type for one in read(text).symbols if one.kind == "uniform"}
-
-
-def undefined(text: str) -> frozenset[str]:
-    """Return the variables that are read but never given a value, and the functions that return none.
-
-    What GLSL leaves undefined, drivers fill in as they like, and no failure of it is a driver's. A variable
-    that a function may write may be given its value there.
-    """
-    return Candidates(text).undefined
-
-
-def undeclared(text: str) -> frozenset[str]:
-    """Return the names that neither a text nor GLSL nor the engine declares."""
-    symbols = read(text)
-    tokens = symbols.tree.tokens
-    names = {tokens[one.token].text for one in symbols.references if one.symbol is None}
-    prefixes = (WIRED, MATCHES, TOWARDS, "previous", "gl_")
-    return frozenset(name for name in names - GLSL_WORDS - GIVEN.keys() if not name.startswith(prefixes))

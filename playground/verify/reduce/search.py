@@ -21,17 +21,15 @@ from functools import partial
 from typing import TypeVar
 
 from playground.memo import TEXTS
+from playground.shader.syntax.tokens import edited
 from playground.sketch.model import Camera
 from playground.verify.reduce.candidate import Finding, Probe
 from playground.verify.reduce.case import Case, Pass, glsl_of
 from playground.verify.reduce.edits import (
     Candidates,
-    edited,
     outputs_of,
     tidy,
     token_count,
-    undeclared,
-    undefined,
     uniforms_of,
 )
 
@@ -346,7 +344,8 @@ class Search:
 
 @TEXTS.cached()
 def _lacking(text: str, names_all: bool) -> frozenset[str]:
-    return undefined(text) | undeclared(text) if names_all else undefined(text)
+    candidates = Candidates(text)
+    return candidates.undefined | candidates.undeclared if names_all else candidates.undefined
 
 
 def _with_settings(case: Case, settings: frozenset[tuple[str, str]]) -> Case:

@@ -15,7 +15,7 @@ from playground.shader.syntax.tokens import tokenize
 from playground.shader.wrap import wrap
 from playground.sketch.techniques import read_kernel
 from playground.verify.reduce.case import unwired, written_out
-from playground.verify.reduce.edits import NUMBERS_WITHOUT_ZERO, Candidates, tidy, undeclared, undefined
+from playground.verify.reduce.edits import NUMBERS_WITHOUT_ZERO, Candidates, tidy
 
 from ...cases import each
 
@@ -191,11 +191,14 @@ def test_what_cannot_compile_or_end_is_not_proposed(text: str, never: str) -> No
 UNUSED = """float used(float x) { return x; }
 float idle(float x) { return idle_too(x); }
 const float LEFT = 1.0, RIGHT = 2.0;
+struct Left { float x; };
+struct Right { float x; };
+float both(Right right) { return right.x; }
 float kernel(ivec2 texel) {
     float set;
     set = 3.0;
     float rest = RIGHT;
-    return used(rest);
+    return used(rest) + both(Right(rest));
 }
 """
 
@@ -203,6 +206,7 @@ float kernel(ivec2 texel) {
 def test_what_nothing_reads_goes_at_once():
     text = tidy(next(iter(Candidates(UNUSED).without_unused())))
     assert "idle" not in text and "set" not in text and "LEFT" not in text
+    assert "Left" not in text and "struct Right" in text
     assert "float used(" in text and "RIGHT = 2.0;" in text and "rest = RIGHT;" in text
 
 
@@ -261,7 +265,7 @@ def compiles(ctx: moderngl.Context, path: Path, text: str) -> bool:
     ],
 )
 def test_what_glsl_leaves_undefined_is_known(text, names):
-    assert undefined(text) == names
+    assert Candidates(text).undefined == names
 
 
 def test_an_input_without_a_source_keeps_members_and_numbers() -> None:
@@ -272,4 +276,4 @@ def test_an_input_without_a_source_keeps_members_and_numbers() -> None:
 
 def test_what_nothing_declares_is_known():
     text = "uniform float a; float f() { vec3 x = b(c) + towards_a; return x.x + wave(size) + sin(a); }"
-    assert undeclared(text) == {"b", "c", "wave"}
+    assert Candidates(text).undeclared == {"b", "c", "wave"}
