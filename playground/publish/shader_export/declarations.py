@@ -19,7 +19,7 @@ from playground.shader.syntax import nodes
 from playground.shader.syntax.parser import Tree, parse
 from playground.shader.syntax.preprocessor import preprocess
 from playground.shader.syntax.symbols import symbols_of
-from playground.shader.syntax.tokens import Token, edited, tokenize
+from playground.shader.syntax.tokens import Token, as_written, directive, tokenize, with_edits
 from playground.sketch.model import Parameter, Value
 
 _CONDITIONS = ("if", "ifdef", "ifndef", "else", "elif", "endif", "undef")
@@ -50,7 +50,7 @@ class Declaration:
     @cached_property
     def words(self) -> frozenset[str]:
         """Every name in its code, but for members of structs where they are read."""
-        return frozenset(token.text for token in _named(_all_tokens(self.text)))
+        return frozenset(token.text for token in _named(as_written(self.text)))
 
     def reads(self, name: str) -> bool:
         """Return whether it names something that stands around it, or itself."""
@@ -74,7 +74,7 @@ class Declaration:
             ]
             has_directives = any(token.startswith("#") for token in self.code)
             if symbols.tree.errors or has_directives:  # statements, or conditions
-                named = [(token.text, token.start) for token in _named(_all_tokens(self.text))]
+                named = [(token.text, token.start) for token in _named(as_written(self.text))]
         places: dict[str, list[int]] = {}
         for name, start in named:
             places.setdefault(name, []).append(start)
@@ -110,14 +110,13 @@ class Declaration:
 
     def renamed(self, names: Mapping[str, str]) -> Declaration:
         """Return it with other names, by the old ones; members, parameters and its own variables stay."""
-        edits = [
-            (place, place + len(old), new)
+        edits = {
+            (place, place + len(old)): new
             for old, new in names.items()
             for place in self._places.get(old, ())
-        ]
-        if not edits:
-            return self
-        return replace(self, text=edited(self.text, edits), names=tuple(names.get(n, n) for n in self.names))
+        }
+        own = tuple(names.get(name, name) for name in self.names)
+        return replace(self, text=with_edits(self.text, edits), names=own) if edits else self
 
     def with_calls(self, name: str, new: Callable[[str, str, str], str]) -> Declaration:
         """Return it with each call that takes a name as an argument replaced, those in its arguments first.
@@ -151,17 +150,6 @@ def _named(tokens: Iterable[Token]) -> Iterator[Token]:
         before = token.text
 
 
-def _all_tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a text, those of its directives too."""
-    for token in tokenize(text)[0]:
-        if token.kind != "directive":
-            yield token
-            continue
-        shift = token.start + 1
-        for part in tokenize(token.text[1:])[0]:
-            yield part._replace(start=part.start + shift, end=part.end + shift)
-
-
 def declarations_of(lines: Sequence[Line]) -> tuple[Declaration, ...]:
     """Return what a flattened text declares, in order: all but its uniforms.
 
@@ -176,8 +164,7 @@ def declarations_of(lines: Sequence[Line]) -> tuple[Declaration, ...]:
 def _declarations_in(text: str) -> tuple[Declaration, ...]:
     tree = parse(text, all_branches=True)
     directives = [token for token in tokenize(text)[0] if token.kind == "directive"]
-    words = [token.text[1:].split(maxsplit=1)[:1] for token in directives]
-    if any(word[0] in _CONDITIONS for word in words if word):
+    if any(directive(token.text)[0] in _CONDITIONS for token in directives):
         return (_as_one(text, tree),)
     units: list[tuple[int, int, tuple[str, ...], bool]] = []
     units += [(*tree.span(node), names_of(node), False) for node in tree.declarations if not _stays(node)]

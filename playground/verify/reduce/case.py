@@ -24,7 +24,7 @@ from playground.shader.dialect import dialects
 from playground.shader.header import note_at, parse_kernel
 from playground.shader.reserved_names import MATCHES, WIRED
 from playground.shader.source import SourceText, read_source, read_source_and_origin
-from playground.shader.syntax.tokens import edited
+from playground.shader.syntax.tokens import as_written, with_edits
 from playground.sketch.flat import Ref, Source
 from playground.sketch.map_sketch import USE
 from playground.sketch.model import (
@@ -448,14 +448,15 @@ def unwired(text: str, name: str) -> str:
     An input that nothing is wired to would else take the latest earlier output of its name.
     """
     symbols = read(text)
-    prefixes = {f"{prefix}{name}": prefix for prefix in (WIRED, MATCHES, "")}
+    members = {symbols.tree.tokens[one.token].spelled for one in symbols.symbols if one.kind == "member"}
     fresh = name if name.startswith("no_") else f"no_{name}"
-    places = {
-        symbols.tree.tokens[one.token].spelled: prefixes[symbols.tree.tokens[one.token].text]
-        for one in symbols.references
-        if symbols.tree.tokens[one.token].text in prefixes
-        and (one.symbol is None or one.symbol.kind == "uniform")
-    }
-    return edited(
-        text, [(at, at + len(f"{prefix}{name}"), f"{prefix}{fresh}") for at, prefix in places.items()]
+    renamed = {f"{prefix}{name}": f"{prefix}{fresh}" for prefix in (WIRED, MATCHES, "")}
+    tokens = list(as_written(text))  # of every branch, and of macros
+    return with_edits(
+        text,
+        {
+            (token.start, token.end): renamed[token.text]
+            for before, token in zip([None, *tokens], tokens, strict=False)
+            if token.text in renamed and token.start not in members and not (before and before.text == ".")
+        },
     )

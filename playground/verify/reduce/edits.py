@@ -57,7 +57,7 @@ from playground.shader.syntax.nodes import (
 )
 from playground.shader.syntax.parser import PRECEDENCE, Tree, parse
 from playground.shader.syntax.symbols import Symbol, Symbols, resolve
-from playground.shader.syntax.tokens import Comment, Edit, Token, edited, tokenize
+from playground.shader.syntax.tokens import Comment, Token, as_written, directive, tokenize, with_edits
 from playground.shader.syntax.types import (
     UNKNOWN,
     ExpressionType,
@@ -175,6 +175,9 @@ NUMBERS = (0, 1)
 NUMBERS_WITHOUT_ZERO = (1,)
 """The same where a zero could itself bring about what is looked for: a whole 0 becomes 0.0 in a division."""
 
+Edit = tuple[int, int, str]
+"""Where a part of a text begins and ends, and what takes its place."""
+
 _ARITHMETIC = frozenset("+-*/")
 _ENTRY_POINTS = frozenset("kernel visit vertex fragment main mainImage".split())
 _PRIMARY, _POSTFIX_OPERAND, _UNARY, _ARGUMENT = 14, 13, 12, 0  # beside the parser's levels of operators
@@ -184,6 +187,11 @@ _OUTPUTS = {"modf": (1,), "frexp": (1,), "uaddCarry": (2,), "usubBorrow": (2,)} 
 _OUTPUT = re.compile(r'\boutput\s*=\s*"([^"]*)"')
 _OPTION = re.compile(r',?\s*\b(\w+)\s*=\s*("[^"]*"|\d+)')
 _ROLE = re.compile(r"\w+(?:\([^)]*\))?")
+
+
+def edited(text: str, edits: Iterable[Edit]) -> str:
+    """Return a text with edits, none of which overlap."""
+    return with_edits(text, {(start, end): new for start, end, new in edits})
 
 
 def outputs_of(text: str) -> list[Output]:
@@ -329,6 +337,7 @@ class Candidates:
         while isinstance(part, Parenthesized):
             part = part.inside
         text = self._source(part)
+        text = f" {text}" if text[0] in "+-" else text  # two signs would become one
         is_loose = _precedence(part) < _precedence_in(self._parents.get(replaced), replaced)
         return f"({text})" if is_loose else text
 
@@ -779,10 +788,10 @@ def _groups(tokens: Sequence[Token]) -> list[tuple[int, int]]:
     """Return where conditions of the preprocessor begin and end, with what is between."""
     groups, open_ = [], []
     for token in tokens:
-        word = token.text.lstrip("# \t").split(maxsplit=1)[:1] if token.kind == "directive" else []
-        if word in (["if"], ["ifdef"], ["ifndef"]):
+        word = directive(token.text)[0] if token.kind == "directive" else ""
+        if word in ("if", "ifdef", "ifndef"):
             open_.append(token.start)
-        elif word == ["endif"] and open_:
+        elif word == "endif" and open_:
             groups.append((open_.pop(), token.end))
     return groups
 
@@ -821,8 +830,8 @@ def read(text: str) -> Symbols:
     sizes: dict[str, int] = {}
     places: list[tuple[int, int]] = []
     for token in tokenize(text)[0] if "#define" in text else ():
-        if token.kind == "directive" and token.text.startswith("#define"):
-            name, *body = [word.text for word in tokenize(token.text.removeprefix("#define"))[0]] or [""]
+        if token.kind == "directive" and directive(token.text)[0] == "define":
+            _, _, name, *body = [*(word.text for word in as_written(token.text)), ""]
             sizes[name] = sum(sizes.get(word, 1) for word in body)
             places.append((token.start, token.end))
     if max(sizes.values(), default=0) > _MAX_EXPANDED_TOKENS:

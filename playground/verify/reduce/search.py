@@ -21,7 +21,7 @@ from functools import partial
 from typing import TypeVar
 
 from playground.memo import TEXTS
-from playground.shader.syntax.tokens import edited
+from playground.shader.syntax.tokens import with_edits
 from playground.sketch.model import Camera
 from playground.verify.reduce.candidate import Finding, Probe
 from playground.verify.reduce.case import Case, Pass, glsl_of
@@ -276,7 +276,7 @@ class Search:
     ) -> bool:
         """Try a text with these items of a list alone."""
         gone = set(items).difference(left)
-        return self._try(name, kind, tidy(edited(text, [(*place, "") for place in gone])))
+        return self._try(name, kind, tidy(with_edits(text, dict.fromkeys(gone, ""))))
 
     def _candidates(self, pass_: Pass, kind: str) -> Candidates:
         return Candidates(getattr(pass_, kind), self._probe.failure.numbers, dict(pass_.given))

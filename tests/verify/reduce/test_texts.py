@@ -272,6 +272,8 @@ def test_an_input_without_a_source_keeps_members_and_numbers() -> None:
     text = "uniform sampler2D f;  //! input\nfloat g = wired_f ? texture(f, uv).x + 1.f + wave.f : 0.0;\n"
     expected = text.replace("sampler2D f", "sampler2D no_f").replace("wired_f", "wired_no_f")
     assert unwired(text, "f") == expected.replace("texture(f", "texture(no_f")
+    text = "struct S { float f; };\n#ifdef X\nfloat a = b(f);\n#endif\n#define M f\n"
+    assert unwired(text, "f") == text.replace("b(f)", "b(no_f)").replace("M f", "M no_f")
 
 
 def test_what_nothing_declares_is_known():
