@@ -21,7 +21,7 @@ from playground.memo import TEXTS
 from playground.paths import GLSL, shown
 from playground.shader.expressions import names_in
 from playground.shader.parameter import write
-from playground.shader.reserved_names import GLSL_WORDS
+from playground.shader.reserved_names import GLSL_WORDS, OUT_ARGUMENTS
 from playground.shader.syntax.influence import unused
 from playground.shader.syntax.nodes import (
     Assign,
@@ -274,16 +274,6 @@ def unwritten(kernel: Kernel) -> tuple[Diagnostic, ...]:
     return tuple(diagnostics)
 
 
-_WRITES_OF_GLSL = {
-    "modf": (1,),
-    "frexp": (1,),
-    "uaddCarry": (2,),
-    "usubBorrow": (2,),
-    "umulExtended": (2, 3),
-    "imulExtended": (2, 3),
-}
-"""Functions of GLSL that write an argument: which."""
-
 _Loops = tuple[Node, ...]
 
 
@@ -366,4 +356,4 @@ class _Uses:
         if any({"out", "inout"}.intersection(one.type.qualifiers) for one in given):
             return "maybe"
         is_known = functions or call.name in GLSL_WORDS or call.at in self.symbols.symbol_at
-        return "maybe" if not is_known or index in _WRITES_OF_GLSL.get(call.name, ()) else "read"
+        return "maybe" if not is_known or index in OUT_ARGUMENTS.get(call.name, ()) else "read"

@@ -170,6 +170,16 @@ BUILT_IN_FUNCTIONS: dict[str, str] = {
 scalar type; ``first``: the first argument's type; ``texel`` of a texture, and its size in ``texels``;
 ``columns``: a matrix of the arguments' columns and rows."""
 
+OUT_ARGUMENTS: dict[str, tuple[int, ...]] = {
+    "modf": (1,),
+    "frexp": (1,),
+    "uaddCarry": (2,),
+    "usubBorrow": (2,),
+    "umulExtended": (2, 3),
+    "imulExtended": (2, 3),
+}
+"""Functions of GLSL that write an argument → which."""
+
 BUILT_IN_VARIABLES: dict[str, str] = {
     name: of_type
     for of_type, names in {

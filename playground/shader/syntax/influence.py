@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Hashable, Iterable, Iterator
 
+from playground.shader.reserved_names import OUT_ARGUMENTS
 from playground.shader.syntax.nodes import (
     Assign,
     Binary,
@@ -37,16 +38,6 @@ from playground.shader.syntax.nodes import (
     walk,
 )
 from playground.shader.syntax.symbols import Symbol, Symbols
-
-OUT_ARGUMENTS = {
-    "modf": (1,),
-    "frexp": (1,),
-    "uaddCarry": (2,),
-    "usubBorrow": (2,),
-    "umulExtended": (2, 3),
-    "imulExtended": (2, 3),
-}
-"""Functions of GLSL that write an argument → which."""
 
 ENTRY, PREVIOUS = "kernel", "previous"
 """The function of a kernel, and the name, or its beginning, of the function that reads the step before."""

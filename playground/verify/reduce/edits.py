@@ -19,6 +19,7 @@ from playground.shader.reserved_names import (
     GIVEN,
     GLSL_WORDS,
     MATCHES,
+    OUT_ARGUMENTS,
     TOWARDS,
     WIRED,
 )
@@ -181,9 +182,6 @@ Edit = tuple[int, int, str]
 _ARITHMETIC = frozenset("+-*/")
 _ENTRY_POINTS = frozenset("kernel visit vertex fragment main mainImage".split())
 _PRIMARY, _POSTFIX_OPERAND, _UNARY, _ARGUMENT = 14, 13, 12, 0  # beside the parser's levels of operators
-_OUTPUTS = {"modf": (1,), "frexp": (1,), "uaddCarry": (2,), "usubBorrow": (2,)} | dict.fromkeys(
-    ("umulExtended", "imulExtended"), (2, 3)
-)  # arguments that functions of GLSL write
 _OUTPUT = re.compile(r'\boutput\s*=\s*"([^"]*)"')
 _OPTION = re.compile(r',?\s*\b(\w+)\s*=\s*("[^"]*"|\d+)')
 _ROLE = re.compile(r"\w+(?:\([^)]*\))?")
@@ -401,7 +399,7 @@ class Candidates:
         if call.name.startswith(("atomic", "imageAtomic")):
             return call.arguments[:1]
         if call.name in BUILT_IN_FUNCTIONS:
-            return [one for i, one in enumerate(call.arguments) if i in _OUTPUTS.get(call.name, ())]
+            return [one for i, one in enumerate(call.arguments) if i in OUT_ARGUMENTS.get(call.name, ())]
         is_type = is_built_in(call.name) or call.name.startswith(("texture", "texel", "shadow", "image"))
         symbol = self._symbols.symbol_at.get(call.at)
         return [] if is_type or symbol is not None else call.arguments
