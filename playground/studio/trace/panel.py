@@ -325,13 +325,15 @@ class TracePanel:
             imgui.StyleVar_.frame_padding: ImVec2(4 * look.scale, 0),
             imgui.StyleVar_.item_spacing: ImVec2(12 * look.scale, 0),
         }
+        if tracing.is_stale:
+            narrow[imgui.StyleVar_.alpha] = 0.5
         with styled(sizes=narrow):
             drawn = False
             if row.head is not None and row.head.count > 1:
                 self._call(view, row.head, look)
                 drawn = True
             elif row.head is not None and not row.head.is_linked:
-                imgui.text_disabled("(another moment)")
+                imgui.text_disabled("(other iteration)")
                 drawn = True
             for at, head in enumerate(row.loops):
                 with pushed_id(f"loop {at}"):
@@ -358,7 +360,7 @@ class TracePanel:
             view.choose_call(head.key, number - 1)
         if not head.is_linked:
             imgui.same_line()
-            imgui.text_disabled("(another moment)")
+            imgui.text_disabled("(other iteration)")
 
     def _loop(self, view: TraceView, head: LoopHead, look: Theme) -> None:
         """Draw the slider over a loop's iterations, and the sparkline of one of its names."""

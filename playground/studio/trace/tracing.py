@@ -80,7 +80,6 @@ class Tracing:
     spots: tuple[Spot, ...] = ()  # under the mouse or the pin, what the picture shows first
     message: str = ""  # why there is no trace of what is chosen
     compiling: str = ""  # what the sandbox compiles
-    seconds: float = 0.0  # that the last trace took
     selection: Selection = field(default_factory=Selection)
     file: str = ""  # that is shown
     line: int = 0  # the caret's, from 1; 0: none
@@ -239,6 +238,11 @@ class Tracing:
         return self.pin is not None or self._fixed is not None
 
     @property
+    def is_stale(self) -> bool:
+        """Whether the values that are shown are not those of what is chosen."""
+        return bool(self.compiling or self.message)
+
+    @property
     def repeats(self) -> int:
         """How many steps the traced pass takes; 1 for one that does not repeat."""
         step = self._step(self.spot) if self.spot is not None else None
@@ -289,10 +293,12 @@ class Tracing:
         wanted, spot = self._wanted(), self.spot
         if wanted == self._traced or self.now() < self._free_at or spot is None:
             return
+        start = self.now()
         try:
             self._trace(spot, wanted)
         except PlaygroundError as error:
             self._fail(str(error), wanted)
+        self._free_at = self.now() + _REST * (self.now() - start)
 
     def _trace(self, spot: Spot, wanted: object) -> None:
         """Trace a texel, or have the sandbox compile the text first; raise what is wrong with either."""
@@ -392,13 +398,8 @@ class Tracing:
         self.message, self._traced, self._seek = message, wanted, False
 
     def _run(self, plan: Plan, spot: Spot, wanted: object) -> None:
-        start = self.now()
-        try:
-            tracer = self.session.engine.tracer
-            trace = tracer.trace(plan, spot.path, spot.texel, self.iteration, self.function)
-        finally:
-            self.seconds = self.now() - start
-            self._free_at = self.now() + _REST * self.seconds
+        tracer = self.session.engine.tracer
+        trace = tracer.trace(plan, spot.path, spot.texel, self.iteration, self.function)
         self.traces += 1
         self.message, self._traced = "", wanted
         before = self.view.trace if self.view is not None else None
