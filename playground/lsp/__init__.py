@@ -2,7 +2,8 @@
 
     server.py       the messages of the protocol, and the answer of each
     documents.py    open texts, saved or not; diagnostics by ``check_file`` in the sandbox
-    shader.py       the names in a shader's text, and what each means; ``sketch_text.py`` those in a sketch
+    names.py        the names in GLSL texts, and what each means
+    shader.py       what is known of a shader; ``sketch_text.py`` of a sketch's TOML
     complete.py     completion
     explain.py      hover, definitions, symbols, colour boxes; ``describe.py`` writes them as Markdown
     rename.py       rename, where it is safe, and references

@@ -12,14 +12,8 @@ from playground.engine.meshes import MESHES
 from playground.engine.sources import SOURCES
 from playground.lsp import describe
 from playground.lsp.documents import Document, Documents, Text
-from playground.lsp.shader import (
-    Shader,
-    is_comment,
-    library_declared,
-    shader_of,
-    syntax_of,
-    word_at,
-)
+from playground.lsp.names import is_comment, syntax_of, word_at
+from playground.lsp.shader import Shader, library_declared, shader_of
 from playground.lsp.sketch_text import Cursor, SketchText, cursor_at, own_techniques
 from playground.paths import GLSL, SKETCHES
 from playground.shader.header import FALLBACKS, MODIFIERS

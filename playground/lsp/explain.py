@@ -13,14 +13,8 @@ from playground.errors import DataError, PlaygroundError
 from playground.lsp import describe
 from playground.lsp.documents import Document, Documents, Text
 from playground.lsp.highlight import influence_text
-from playground.lsp.shader import (
-    include_at,
-    is_code,
-    library_declared,
-    shader_of,
-    syntax_of,
-    word_at,
-)
+from playground.lsp.names import include_at, is_code, syntax_of, word_at
+from playground.lsp.shader import library_declared, shader_of
 from playground.lsp.sketch_text import SketchText
 from playground.paths import GLSL, shown
 from playground.shader.colours import parse_hex, to_hex

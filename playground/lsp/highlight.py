@@ -10,8 +10,9 @@ from lsprotocol import types
 
 from playground.errors import Diagnostic
 from playground.lsp.documents import Document, Documents
+from playground.lsp.names import Syntax, syntax_of, word_at, words
 from playground.lsp.rename import references
-from playground.lsp.shader import Shader, Syntax, shader_of, syntax_of, word_at, words
+from playground.lsp.shader import Shader, shader_of
 from playground.paths import shown
 from playground.shader.reserved_names import GLSL_WORDS, MATCHES, TOWARDS, WIRED
 from playground.shader.syntax.influence import Influence, unused

@@ -22,18 +22,8 @@ from lsprotocol import types
 from playground.allowed_files import FAST, SHADERS, is_file, names_below, reading_unsaved
 from playground.errors import PlaygroundError
 from playground.lsp.documents import Document, Documents, root_for
-from playground.lsp.shader import (
-    Meaning,
-    Shader,
-    Syntax,
-    Unit,
-    is_code,
-    shader_at,
-    shader_of,
-    syntax_of,
-    word_at,
-    words,
-)
+from playground.lsp.names import Meaning, Syntax, Unit, is_code, syntax_of, word_at, words
+from playground.lsp.shader import Shader, shader_at, shader_of
 from playground.lsp.sketch_text import SketchText
 from playground.paths import shown
 from playground.shader.header import is_given, parse_kernel

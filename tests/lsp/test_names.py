@@ -10,7 +10,7 @@ import pytest
 
 from playground.engine.programs import compile_wrapped
 from playground.errors import PlaygroundError
-from playground.lsp.shader import Syntax, syntax_of, words
+from playground.lsp.names import Syntax, syntax_of, words
 from playground.paths import GLSL
 from playground.shader.syntax.symbols import Symbol
 from playground.shader.wrap import FRAGMENT, wrap
