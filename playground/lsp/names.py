@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 
 from playground.memo import Memo
 from playground.shader.reserved_names import GIVEN
-from playground.shader.source import find_include
 from playground.shader.syntax.influence import scopes_of
 from playground.shader.syntax.nodes import Expression, Function, Member, Node, walk
 from playground.shader.syntax.parser import Tree, parse
@@ -358,29 +357,30 @@ def include_at(text: str, at: int) -> Include | None:
 class Unit:
     """A shader's text with its includes in place, each once, and where each part of it comes from."""
 
-    def __init__(self, path: Path, root: Path, texts: Mapping[Path, str]) -> None:
-        self._root, self._texts = root, texts
+    def __init__(
+        self, path: Path, texts: Mapping[Path, str], targets: Mapping[tuple[Path, str], Path]
+    ) -> None:
+        """Make it of the texts of its files; ``targets`` has the file of each include that a file writes."""
+        self._texts, self._targets = texts, targets
         self._parts: list[tuple[int, Path, int]] = []  # where a part begins, its file, where it begins there
         self._pieces: list[str] = []
         self._length = 0
         self._included: set[Path] = set()
+        self._around: list[Path] = []  # files whose includes are being put in place
         self._add(path)
         self.text = "".join(self._pieces)
         self._starts = [start for start, _, _ in self._parts]
 
     def _add(self, path: Path) -> None:
         self._included.add(path)
+        self._around.append(path)
         text, at = self._texts[path], 0
         for include in includes(text):
-            target = find_include(include.name, path, (self._root,))
-            if (
-                target is None
-                or target not in self._texts
-                or (target in self._included and _is_guarded(self._texts[target]))
-            ):
+            target = self._targets.get((path, include.name))
+            if target not in self._texts or target is None or len(self._parts) > _MAX_PARTS:
                 continue
-            if len(self._parts) > _MAX_PARTS:
-                break
+            if target in self._around or (target in self._included and _is_guarded(self._texts[target])):
+                continue
             start = text.rfind("\n", 0, include.start) + 1
             end = text.find("\n", include.end)
             self._put(path, text, at, start)
@@ -388,6 +388,7 @@ class Unit:
             self._put(None, "\n", 0, 1)
             at = end if end >= 0 else len(text)
         self._put(path, text, at, len(text))
+        self._around.pop()
 
     def _put(self, path: Path | None, text: str, start: int, end: int) -> None:
         if path is not None:
@@ -442,6 +443,12 @@ def _is_guarded(text: str) -> bool:
 
 
 @SYNTAX.cached(weight=64)
-def unit_of(path: Path, root: Path, files: tuple[tuple[Path, str], ...]) -> Unit:
-    """Return a shader's text with its includes in place; ``files`` are those that it reads."""
-    return Unit(path, root, dict(files))
+def unit_of(
+    path: Path, files: tuple[tuple[Path, str], ...], targets: tuple[tuple[Path, str, Path], ...]
+) -> Unit:
+    """Return a shader with its includes in place.
+
+    ``files`` are those that it reads, each with its text; ``targets`` a file, what it includes, and the file
+    that this is.
+    """
+    return Unit(path, dict(files), {(file, name): target for file, name, target in targets})

@@ -45,6 +45,7 @@ class Shader:
     text: str
     root: Path
     files: tuple[tuple[Path, str], ...]  # every file read with its text, the shader's own first
+    targets: tuple[tuple[Path, str, Path], ...] = ()  # file, what it includes, which file that is
     parameters: tuple[Parameter, ...] = ()
     inputs: tuple[Input, ...] = ()
     kernel: Kernel | None = None  # None where its header cannot be read, and for a library file
@@ -114,7 +115,7 @@ class Shader:
     @property
     def unit(self) -> Unit:
         """Its text with its includes in place."""
-        return unit_of(self.path, self.root, self.files)
+        return unit_of(self.path, self.files, self.targets)
 
     def type_before(self, dot: int) -> str:
         """Return the type of what a dot of the text is behind, its statement typed or not; "" for unknown."""
@@ -129,7 +130,7 @@ class Shader:
         end = next((token.end for token in tokens[index:] if token.text == ";"), line_end)
         text = f"{self.text[:start]}\n{operand};{self.text[min(end, line_end) :]}"
         texts = tuple((path, text if path == self.path else other) for path, other in self.files)
-        unit = unit_of(self.path, self.root, texts)
+        unit = unit_of(self.path, texts, self.targets)
         for place in unit.places(self.path, start + 1):
             if glsl_type := unit.syntax.type_at(place):
                 return glsl_type
@@ -147,10 +148,11 @@ def shader_at(path: Path, text: str, root: Path, documents: Documents) -> Shader
         try:
             source = read_source(path, (root,))
         except PlaygroundError:
-            return Shader(path, text, root, tuple(_reached(path, text, root)))
+            return Shader(path, text, root, *_reached(path, text, root))
         files = tuple((Path(file), read_text(Path(file))) for file in source.files)
+        targets = tuple((Path(file), name, Path(target)) for file, name, target in source.includes)
         kernel, parameters, inputs = _header(source)
-    return Shader(path, text, root, files, parameters, inputs, kernel)
+    return Shader(path, text, root, files, targets, parameters, inputs, kernel)
 
 
 def _header(source: SourceText) -> tuple[Kernel | None, tuple[Parameter, ...], tuple[Input, ...]]:
@@ -167,20 +169,25 @@ def _header(source: SourceText) -> tuple[Kernel | None, tuple[Parameter, ...], t
         return None, (), ()
 
 
-def _reached(path: Path, text: str, root: Path) -> Iterator[tuple[Path, str]]:
-    """Yield a file and what it includes, without the includes that are not there."""
-    seen, rest = {path}, [(path, text)]
+def _reached(
+    path: Path, text: str, root: Path
+) -> tuple[tuple[tuple[Path, str], ...], tuple[tuple[Path, str, Path], ...]]:
+    """Return a file and what it includes, and its includes, without those that are not there."""
+    files, targets, rest = {path: text}, [], [path]
     while rest:
-        path, text = rest.pop(0)
-        yield path, text
-        for include in includes(text):
-            include_path = find_include(include.name, path, (root,))
-            if include_path is not None and include_path not in seen:
-                seen.add(include_path)
+        path = rest.pop(0)
+        for include in includes(files[path]):
+            target = find_include(include.name, path, (root,))
+            if target is None:
+                continue
+            targets.append((path, include.name, target))
+            if target not in files:
                 try:
-                    rest.append((include_path, read_text(include_path)))
+                    files[target] = read_text(target)
                 except PlaygroundError:
                     continue
+                rest.append(target)
+    return tuple(files.items()), tuple(targets)
 
 
 @cache
