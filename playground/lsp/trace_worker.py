@@ -15,7 +15,7 @@ from playground.engine.trace.model import Trace
 from playground.errors import PlaygroundError, SketchError
 from playground.paths import shown
 from playground.sketch.load import is_technique, load
-from playground.sketch.model import CpuSource, Sketch, Value, kernels_of
+from playground.sketch.model import DEFAULT_PICTURE, CpuSource, Sketch, Value, kernels_of
 
 _MAX_SKETCHES = 50  # of a folder that are looked at for one that uses a shader
 
@@ -29,6 +29,7 @@ class TraceRequest:
     path: str = ""  # of the pass; "" for the first one of the file
     file: Path | None = None  # absolute, of a shader
     iteration: int | tuple[int, ...] | None = None
+    size: tuple[int, int] | None = None  # of the picture [pixels]; None: as a trace has it
     time: float = 0.0  # [s]
     values: tuple[tuple[str, Value], ...] = ()
     is_deep: bool = False  # functions of included files, too
@@ -58,6 +59,7 @@ def trace(engine: Engine, request: TraceRequest) -> Trace:
         texel=request.texel,
         iteration=request.iteration,
         function="all" if request.is_deep else None,
+        size=request.size or DEFAULT_PICTURE,
         time=request.time,
         values=dict(request.values),
     )

@@ -1,14 +1,12 @@
 """The values of one texel beside the lines of open shaders: inlay hints, and iterations in the hover.
 
 The texel is one that a comment of the shader names, ``// trace: 120 40``, or the one that is traced in the
-window, which writes it to ``traced_texel.json`` in the user's state folder. A thread of its own waits until
-typing rests, has a worker process trace the open texts, and tells the editor to ask for hints again; until
-then lines that were changed have none.
+window (``engine.trace.live_texel``). A thread of its own waits until typing rests, has a worker process trace
+the open texts, and tells the editor to ask for hints again; until then lines that were changed have none.
 """
 
 from __future__ import annotations
 
-import json
 import re
 import threading
 import time
@@ -22,17 +20,15 @@ from lsprotocol import types
 from playground.engine.process.pool import Limits, Pool
 from playground.engine.process.worker import summary_of
 from playground.engine.trace.listing import heading, loop_table, note_of, text_of
+from playground.engine.trace.live_texel import live_file, read_live_texel
 from playground.engine.trace.model import Event, Trace
 from playground.errors import ParameterError, PlaygroundError, ShaderError
 from playground.lsp import describe
 from playground.lsp.documents import Document, Documents
 from playground.lsp.names import word_at
 from playground.lsp.trace_worker import TraceRequest
-from playground.paths import shown, state_folder
+from playground.paths import shown
 from playground.shader.syntax.tokens import tokenize
-
-LIVE_FILE = "traced_texel.json"
-"""What the window writes in the user's state folder, and removes: the texel that it traces."""
 
 REST_SECONDS = 0.4
 """[s] without typing before a text is traced again."""
@@ -42,7 +38,6 @@ _HANDLER = "playground.lsp.trace_worker"
 _LIMITS = Limits(seconds=20.0, total_seconds=60.0, memory_bytes=4 * 2**30)
 _MAX_NOTE = 100  # letters of a hint
 _MAX_ROWS = 32  # of a table of iterations
-_MAX_FILE = 2**16  # [bytes]
 _MARK = re.compile(r"//\s*trace:(.*)", re.DOTALL)
 _TEXEL = re.compile(
     r"\s*(\d+)[\s,]+(\d+)(?:\s+iteration\s+(\d+))?(?:\s+of\s+([\w.]+))?(?:\s+in\s+(\S+))?\s*", re.ASCII
@@ -80,24 +75,18 @@ def texel_in_comment(document: Document) -> TraceRequest | None:
 
 def texel_of_window(file: Path) -> TraceRequest | None:
     """Return what the window traces, by the file that it writes; None where it traces nothing."""
-    try:
-        with file.open("rb") as stream:
-            table = json.loads(stream.read(_MAX_FILE))
-        column, row = (int(part) for part in table["texel"])
-        iteration = table.get("iteration")
-        return TraceRequest(
-            (column, row),
-            sketch=str(table["sketch"]),
-            path=str(table["pass"]),
-            iteration=tuple(iteration) if isinstance(iteration, list) else iteration,
-            time=float(table.get("time", 0.0)),
-            values=tuple(
-                (str(path), tuple(value) if isinstance(value, list) else value)
-                for path, value in table.get("values", {}).items()
-            ),
-        )
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return None  # it traces nothing, or its file is of another version
+    live = read_live_texel(file)
+    if live is None:
+        return None
+    return TraceRequest(
+        live.texel,
+        sketch=live.sketch,
+        path=live.path,
+        iteration=live.iteration,
+        size=live.size,
+        time=live.time,
+        values=live.values,
+    )
 
 
 class _Traced(NamedTuple):
@@ -128,7 +117,6 @@ class Tracer:
         *,
         software: bool = False,
         device: int | None = None,
-        live_file: Path | None = None,
     ) -> None:
         """Make it; ``start`` starts it.
 
@@ -138,7 +126,7 @@ class Tracer:
         self._documents, self._lock = documents, lock
         self._refresh, self._tell = refresh, tell
         self._pool = Pool(_HANDLER, _LIMITS, options=(software, device))
-        self._live_file = live_file or state_folder() / LIVE_FILE
+        self._live_file = live_file()
         self._news = threading.Condition()
         self._changed = 0.0  # when a text was last, as time.monotonic
         self._ends = False

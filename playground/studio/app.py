@@ -23,6 +23,7 @@ from playground.engine.context import prefer_software
 from playground.engine.engine import Engine
 from playground.engine.programs import warnings_of
 from playground.engine.sandbox import Sandbox
+from playground.engine.trace.live_texel import live_file
 from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import DEFAULT_SKETCH
 from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
@@ -67,6 +68,7 @@ from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.remote.remotes import Remotes
 from playground.studio.session import Session
 from playground.studio.status import Status
+from playground.studio.trace.live import LiveTexelFile
 from playground.studio.trace.panel import TracePanel, act_on_picture, draw_mark
 from playground.studio.window import Window, WindowPlacement, wake
 
@@ -249,6 +251,7 @@ class Live:
         host = Host(self.bench, autosave, self._remember, wake, lambda: window.theme)
         self.additions: list[Addition] = [m.open_addition(host) for m in rooms.modules("addition")]
         self.bench.additions = self.additions
+        self.live_texel = LiveTexelFile(self.bench.tracing, live_file(), time.monotonic)
         self.remotes = Remotes()
 
     def run(self, time_limit: float | None = None) -> None:
@@ -260,6 +263,7 @@ class Live:
             others = (
                 self.bench.inspection.patience(now),
                 self.bench.tracing.patience,
+                self.live_texel.patience,
                 *(addition.patience for addition in self.additions),
             )
             patience = min(self._patience(), *others)
@@ -302,6 +306,7 @@ class Live:
         """Release all that was made in the window's context."""
         self.bench.inspection.release()
         self.bench.tracing.release()
+        self.live_texel.close()
         for addition in self.additions:
             addition.release()
         self.painter.release()
@@ -471,6 +476,7 @@ class Live:
         view = bench, picture, look, area, self.window.density
         draw("what is shown over the picture", lambda: draw_inspection(*view), None)
         self.guard.run("tracing", lambda: tracing.update(picture), None)
+        self.guard.run("the texel for editors", self.live_texel.update, None)
         draw("the pinned texel", lambda: draw_mark(tracing, look, area), None)
         draw("the trace", lambda: self.trace_panel.draw(tracing, look, above), None)
         draw("the notices", lambda: draw_notices(bench.notices, look, area), None)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import playground
+from playground.engine.trace.live_texel import LiveTexel, live_file, write_live_texel
 from playground.engine.trace.model import Event
 from playground.lsp.documents import Documents, root_for
 from playground.lsp.highlight import influence
@@ -164,26 +163,16 @@ def test_the_window_s_texel_is_shown_in_every_file_of_its_pass(traced: Editor, h
     head, _, tail = KERNEL.replace("// trace: 3 5\n", '#include "twice.glsl"\n').partition("float twice")
     text = head + tail.partition("}\n")[2]
     (traced.folder / "hill.glsl").write_text(text)
-    live: dict[str, Any] = {
-        "format": 1,
-        "sketch": str(traced.folder / "sketch.toml"),
-        "pass": "height",
-        "texel": [0, 4],
-        "iteration": None,
-        "time": 0.0,
-        "values": {"height.gain": 3.0},
-        "later": "keys",
-    }
+    sketch = str(traced.folder / "sketch.toml")
+    live = LiveTexel(sketch, "height", (0, 4), size=(64, 36), values=(("height.gain", 3.0),))
     for uri, own in ((hill, text), (library.as_uri(), library.read_text())):
         traced.open(uri, own)
-    file = traced.folder.parent / "state" / NAME / "traced_texel.json"
-    file.parent.mkdir(parents=True)
-    file.write_text(json.dumps(live))
+    file = live_file(traced.folder.parent / "state" / NAME)
+    write_live_texel(live, file)
     hints_when(traced, hill, lambda hints: hints.get(8) == "sum = 0 | 6 | 18 | 36")
     hints_when(traced, library.as_uri(), lambda hints: hints.get(4) == "→ 0 | 2 | 4 | 6")
-    file.write_text("{")
+    write_live_texel(None, file)
     hints_when(traced, hill, lambda hints: not hints)
-    file.unlink()
     library.unlink()
 
 
