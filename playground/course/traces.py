@@ -89,7 +89,6 @@ class TracedLines:
     values: Mapping[Key, Any] = field(default_factory=dict)
     hidden: Mapping[Key, str] = field(default_factory=dict)  # the question that asks for one
     digits: int = 4
-    is_exact: bool = True  # whether the traced run gave the texel bit for bit
 
     def cell(self, column: str, index: int) -> str:
         """Return a cell of the table, by its column and the index of its step; "" where nothing was set."""
@@ -270,7 +269,8 @@ def lines_of(trace: TexelTrace, block: Trace, asked: Mapping[Key, str] = Mapping
     """Return the lines of a block with what a trace gave them.
 
     ``asked`` are the values that questions ask for, with their names. Raises ``SketchError`` for a
-    function, a call, a loop, a variable, an iteration or an anchor that there is not.
+    function, a call, a loop, a variable, an iteration or an anchor that there is not, for a run that was
+    cut short, and for one whose result differs from the texel's in the digits that are shown.
     """
     try:
         return _lines_of(trace, block, asked)
@@ -279,6 +279,7 @@ def lines_of(trace: TexelTrace, block: Trace, asked: Mapping[Key, str] = Mapping
 
 
 def _lines_of(trace: TexelTrace, block: Trace, asked: Mapping[Key, str]) -> TracedLines:
+    _check_run(trace, block)
     shown = excerpt(block.file, block.anchor)
     call = _call(trace, block)
     if _file_of(call.path) != block.file:
@@ -315,8 +316,19 @@ def _lines_of(trace: TexelTrace, block: Trace, asked: Mapping[Key, str]) -> Trac
         values=values,
         hidden=hidden,
         digits=block.digits,
-        is_exact=trace.is_exact,
     )
+
+
+def _check_run(trace: TexelTrace, block: Trace) -> None:
+    if not trace.is_complete:
+        message = f"the run has {trace.count} values, and {len(trace.events)} events were recorded"
+        raise SketchError(f"{message}: choose a texel or parameters with fewer iterations")
+    for name, texel in trace.texel_values.items():
+        here, there = (text_of(value, block.digits) for value in (trace.outputs[name], texel))
+        if here != there:
+            raise SketchError(
+                f"the traced run gives {name} = {here}, the texel has {there}: show fewer digits"
+            )
 
 
 def _call(trace: TexelTrace, block: Trace) -> Call:

@@ -12,6 +12,7 @@ from playground.course.book.build import prepare, write_book
 from playground.course.book.live import LiveBook
 from playground.course.measures import Number
 from playground.course.read import read_lessons
+from playground.course.traces import Answer
 
 from ..browser import MISSING, Browser
 
@@ -127,6 +128,35 @@ def test_a_right_number_puts_the_value_into_the_figure(page):
     page.run("document.querySelector('#height input').focus()")
     page.press(END)
     assert "total = 2.1" in page.run(f"return {BESIDE}")
+
+
+def test_a_page_reads_numbers_as_python_does(page):
+    texts = [
+        "2.1",
+        "2,1",
+        " 2.1 ",
+        "+2.1",
+        "2.1e0",
+        "21e-1",
+        "2.1001",
+        "2.2",
+        "−2.1",
+        "0002.1",
+        "2.1.",
+        "2. 1",
+    ]
+    texts += ["", ".", "nan", "2.1 m", "1e999", "0x2", "2_1", "2.100001", "2\u202f.1", "2.10099", "2.09"]
+    answer = Answer(
+        float(page.run("return document.querySelector('#corners input').dataset.value")), "2.1", 1e-3
+    )
+    for text in texts:
+        page.run(
+            "const field = document.querySelector('#corners .number');"
+            "field.querySelector('input').value = arguments[0]; field.querySelector('button').click()",
+            text,
+        )
+        verdict = page.run("return document.querySelector('#corners .verdict').className")
+        assert (verdict == "verdict right") == answer.accepts(text), text
 
 
 def test_paper_has_the_table_and_no_answer(page):
