@@ -12,7 +12,7 @@ import hashlib
 from html import escape
 
 _NOWHERE = "base-uri 'none'; form-action 'none'"
-_VOID = frozenset({"img", "input", "br", "meta", "link", "hr"})
+_VOID = frozenset({"img", "input", "br", "meta", "link", "hr", "col"})
 
 
 class Markup(str):

@@ -112,6 +112,12 @@ def test_a_trace_is_stepped_through_by_keys_and_says_its_values(page):
     assert "▸" in page.run(f"return {mark}")  # not by a colour alone
     page.press(END)
     assert "total = ?" in page.run(f"return {BESIDE}")
+    cells = "[...document.querySelector('#height .beside tbody tr').children].map((cell) => cell.offsetWidth)"
+    number, code, values = page.run(f"return {cells}")
+    assert number < 80 and code > values > 200
+    page.emulate("setDeviceMetricsOverride", width=360, height=700, deviceScaleFactor=1, mobile=False)
+    number, code, values = page.run(f"return {cells}")
+    assert number < 80 and code == values > 200  # one below the other
 
 
 def test_a_right_number_puts_the_value_into_the_figure(page):

@@ -333,7 +333,8 @@ def traced_code(lines: TracedLines, label: Labels, *, at: int | None = None, rev
         )
     heads = (tag("th", label(key), scope="col") for key in ("trace_line", "trace_code", "trace_values"))
     head = tag("thead", tag("tr", *heads), class_="visually-hidden")
-    return tag("div", tag("table", head, tag("tbody", *rows)), class_="table beside", tabindex=0)
+    columns = tag("colgroup", *(tag("col") for _ in range(3)))
+    return tag("div", tag("table", columns, head, tag("tbody", *rows)), class_="table beside", tabindex=0)
 
 
 def _beside(each: Beside, lines: TracedLines, at: int | None, reveals: bool) -> Markup:
