@@ -233,7 +233,7 @@ def traces_named(lesson: Lesson, names: Iterable[str]) -> list[Trace]:
     needed = {name.partition(":")[0] for name in names}
     for block in lesson.blocks:
         if isinstance(block, Question) and block.of is not None and block.name in needed:
-            needed.add(trace_of(lesson, block).name)
+            needed.add(block.of.trace)
     return [block for block in lesson.blocks if isinstance(block, Trace) and block.name in needed]
 
 
