@@ -382,6 +382,9 @@ class Checker:
 
     def _traced(self, case: ShotCase, outcome: Outcome) -> tuple[str, ...]:
         """Return lines that name the first value that differs from the reference's run, or why none do."""
+        if outcome.word == "nan":
+            bad = outcome.frame.first_bad if isinstance(outcome.frame, RenderedShot) else None
+            return () if bad is None else bad.lines
         reference, seen = outcome.reference, outcome.perceived
         position = seen.place if seen is not None else outcome.comparison.position
         if position is None or reference is None or self.updating or case.shot not in case.sketch.shots:
@@ -408,7 +411,7 @@ class Checker:
             lines.append("    not written: it had not failed before")
         lines.append(f"    reference   {shown(outcome.path)}")
         lines += [f"                {line}" for line in outcome.differences]
-        heads = ["first other", *[""] * len(traced)]
+        heads = ["first NaN" if outcome.word == "nan" else "first other", *[""] * len(traced)]
         lines += [f"    {head:<11} {line}" for head, line in zip(heads, traced, strict=False)]
         lines += [f"    {word:<11} {path}" for word, path in self.recorder.pictures(outcome.case)]
         command = self.accepting(node, outcome)

@@ -41,6 +41,7 @@ from playground.verify.shots.compare import TOLERANCE
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine
+    from playground.engine.non_finite import NotFinite
     from playground.engine.trace.model import Trace
     from playground.verify.shots.references import Reference
 
@@ -88,7 +89,7 @@ class Difference:
 
     sentence: str  # what differs
     at: str  # pass, texel and iteration
-    run: str  # which run the reference's is
+    run: str = ""  # which run the reference's is; "": only one is looked at
     values: tuple[str, ...] = ()  # the pass's own that are others, as text
     path: str = ""  # absolute, of the author's file; "" where no line is known
     line: int = 0  # from 1
@@ -98,10 +99,11 @@ class Difference:
     @property
     def lines(self) -> tuple[str, ...]:
         """Return it as text, a line each."""
+        run = (f"the reference's run: {self.run}",) if self.run else ()
         where = f"{shown(self.path)}:{self.line}: " if self.path else ""
         codes = [f"{name:<7} {code}" for name, code in (("now", self.now), ("before", self.before)) if code]
         values = [f"{'values':<7} {value}" for value in self.values]
-        return f"{where}{self.sentence}  ({self.at})", *codes, *values, f"the reference's run: {self.run}"
+        return f"{where}{self.sentence}  ({self.at})", *codes, *values, *run
 
 
 def search_for(
@@ -415,6 +417,20 @@ def _other_values(origin: _Origin) -> tuple[str, ...]:
     ]
     values = [f"{name} = {spell(now.values[name])}, was {spell(before.values[name])}" for name in names]
     return tuple(values[:_MAX_VALUES])
+
+
+def first_not_finite(engine: Engine, found: NotFinite) -> Difference | None:
+    """Return where a number that is not finite begins, in the run of the last frame that gave one."""
+    try:
+        trace = engine.trace_frame(found.path, texel=found.texel)
+    except PlaygroundError:
+        return None
+    event = trace.first_not_finite()
+    if event is None:
+        return None
+    x, y = found.texel
+    at = f"pass {found.path}, texel ({x}, {y})"
+    return Difference(event_text(event), at, "", (), event.path, event.line, _code(trace, event))
 
 
 def _functions(origin: _Origin) -> str | None:

@@ -136,7 +136,7 @@ class Record:
     numbers: dict[str, float] = field(default_factory=dict)  # what was measured, by name with its unit
     place: tuple[int, int] | None = None  # [pixels] x and y, from the top left, of the worst one
     fingerprint: tuple[str, ...] = ()  # how what drew the two differs, a message each
-    traced: tuple[str, ...] = ()  # the first line whose value is another than in the reference's run
+    traced: tuple[str, ...] = ()  # the first line whose value differs from the reference's run, or is NaN
     error: str = ""  # what the child process printed before it failed
     folder: str = ""  # its folder here, where a sketch of the same name has the plain one; else ""
     rules: Rules = Rules()

@@ -42,7 +42,7 @@ from playground.verify.shots.compare import (
     mask_of,
     striped,
 )
-from playground.verify.shots.first_difference import Difference, Search, locate
+from playground.verify.shots.first_difference import Difference, Search, first_not_finite, locate
 from playground.verify.shots.flip import flip_picture
 from playground.verify.shots.judge import (
     Judgement,
@@ -83,6 +83,7 @@ class RenderedShot(Frame):
 
     drawn: str = ""  # hash of what was drawn
     not_finite: str = ""  # the first texture that went into it with a number that is not finite, as text
+    first_bad: Difference | None = None  # the line in which that begins
     gl_error: str = ""  # what drawing it left behind
     fonts: str = ""  # the files of the fonts in it
     tone: str = ""  # how its floats were shown
@@ -144,6 +145,7 @@ def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
         frame.time,
         drawn=drawn,
         not_finite=str(not_finite) if not_finite else "",
+        first_bad=first_not_finite(engine, not_finite) if not_finite else None,
         gl_error="" if error == "GL_NO_ERROR" else error,
         masks=tuple(masks),
     )

@@ -67,7 +67,9 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Pages]:
 
 def sketch_of(folder: Path, body: str, **files: str) -> Sketch:
     texts = {"seed.glsl": SEED, "spread.glsl": SPREAD, "sloped.glsl": SLOPED, "flow.glsl": FLOW}
-    texts |= {"flows.toml": FLOWS, "many.glsl": MANY} | {f"{name}.glsl": text for name, text in files.items()}
+    texts |= {"many.glsl": MANY} | {f"{name}.glsl": text for name, text in files.items()}
+    own = "flow.initial" if "sampler2D initial" in texts["flow.glsl"] else "flow.water"
+    texts["flows.toml"] = FLOWS.replace("flow.water", own)
     for name, text in texts.items():
         (folder / name).write_text(text, "utf-8")
     (folder / "s.toml").write_text(f"format = 1\nsize = [{SIZE[0]}, {SIZE[1]}]\n{body}", "utf-8")
@@ -186,6 +188,47 @@ def test_passes_of_loops_are_traced(pages: Pages, drawn: Engine, tmp_path: Path)
         after = drawn.read(sketch, "water", size=SIZE, steps={"water": iteration + 1})
         assert (trace["isExact"], trace["total"]) == (True, 4)
         assert trace["outputs"] == [[after[9, 8]]]
+
+
+def test_repeats_inside_loops_are_traced_at_their_last(pages: Pages, drawn: Engine, tmp_path: Path) -> None:
+    """The page chooses the loop's iteration."""
+    again = FLOW.replace('"flow:r32f"', '"flow:r32f", repeat = "3"').replace(
+        "sampler2D water", "sampler2D initial"
+    )
+    again = again.replace("texelFetch(water, texel, 0).r + more", "previous(texel) + more")
+    wires = 'repeat = 4\nfeedback = { water = "water" }\ninputs = { water = "seed" }'
+    sketch = sketch_of(
+        tmp_path, passes(seed="./seed", water=("./flows", wires)) + map_of("water"), flow=again
+    )
+    open_page(pages, sketch, drawn)
+    for iteration in (0, 3):
+        trace = traced(pages, "water.flow", (8, 9), iteration)
+        after = drawn.read(sketch, "water", size=SIZE, steps={"water": iteration + 1})
+        assert (trace["isExact"], trace["total"]) == (True, 4)
+        assert trace["outputs"] == [[after[9, 8]]]
+
+
+TOY = """float level(vec2 p) { return length(p) - 0.5; }
+void mainImage(out vec4 fragColor, in vec2 fragCoord) {
+    vec2 p = (fragCoord - 0.5 * iResolution.xy) / iResolution.y;
+    float t = 0.0;
+    for (int i = 0; i < 3; i++) t += level(p);
+    fragColor = vec4(vec3(t) + fwidth(p.x), 1.0);
+}
+"""
+
+
+def test_shaders_of_other_tools_are_traced(pages: Pages, drawn: Engine, tmp_path: Path) -> None:
+    """By the names that the page gives them, with derivatives of the picture's own quads."""
+    (tmp_path / "s.glsl").write_text(TOY)
+    open_page(pages, load(tmp_path / "s.glsl"), drawn)
+    for texel in ((7, 5), (40, 63)):
+        trace = traced(pages, "view", texel)
+        assert trace["isExact"]
+        x, y = values(trace, "p")[0]
+        assert (x, y) == pytest.approx(((texel[0] + 0.5 - 48) / 64, (texel[1] + 0.5 - 32) / 64), rel=1e-6)
+        (color,) = values(trace, "fragColor")
+        assert color[0] == pytest.approx(3 * (np.hypot(x, y) - 0.5) + 1 / 64, rel=1e-5)
 
 
 def test_edited_texts_and_draws_have_no_trace(pages: Pages, drawn: Engine, tmp_path: Path) -> None:

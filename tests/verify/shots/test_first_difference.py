@@ -171,3 +171,9 @@ def test_without_git_the_reason_is_said(accepted: Run, edit: Edit) -> None:
     result = accepted("slope.toml")
     result.assert_outcomes(failed=2, passed=1)
     result.stdout.fnmatch_lines(["*no trace: *no repository of git*"])
+
+
+def test_the_first_line_that_is_no_number_is_named(committed: Run, edit: Edit) -> None:
+    edit("terrain.glsl", "float lighter = hill + 0.25;", "float lighter = hill + sqrt(0.1 - hill);")
+    first, now = traced(committed)
+    assert first.startswith("terrain.glsl:9: lighter = NaN") and "sqrt(0.1 - hill)" in now

@@ -443,7 +443,6 @@ export const createPlayer = (engine, sketch, onClose) => {
         stepsOf([node]).some((inside) => inside.path === path));
       if (!step) throw failure("sketch", `There is no pass '${path}'.`);
       const repeats = step.kernel.kind === "kernel" && step.kernel.repeat !== 1;
-      if (loop && repeats) throw failure("sketch", `Pass '${path}' repeats inside a loop.`);
       const total = loop ? loop.repeat : repeats ? step.repeat : 1, ref = { path, output: step.kernel.outputs[0].name };
       if (!total) throw failure("sketch", `Pass '${path}' has not run yet.`);
       const iteration = Math.min(Math.max(wanted ?? total - 1, 0), total - 1);
@@ -451,11 +450,15 @@ export const createPlayer = (engine, sketch, onClose) => {
       const upTo = (count) =>
         makePlan(sketch, { ...state, steps: { ...state.steps, [loop ? loop.path : path]: count } });
       if (loop) { // of what a loop ran for its earlier iterations nothing is left
-        const cache = createCache(CACHE_OF_VISIT, engine.parts.textures);
+        const { textures, kernels } = engine.parts, cache = createCache(CACHE_OF_VISIT, textures);
         drained(executed(upTo(iteration + 1), ref, 0, () => {}, { cache, computed: (job, made) => {
           if (job.step.path !== path || job.around?.number !== iteration) return;
           look(made, job.step);
-          run(job, null, iteration);
+          const last = job.step.repeat - 1; // of its own repeat
+          if (!repeats || last < 0) return run(job, null, iteration);
+          const before = drained(kernels.run({ ...job, start: null, step: { ...job.step, repeat: last } }));
+          run(job, before, last);
+          textures.give(before);
         } }));
         cache.clear();
       } else {

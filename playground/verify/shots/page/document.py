@@ -247,11 +247,12 @@ def _rules(record: Record) -> Markup | None:
 
 
 def _traced(record: Record) -> Markup | None:
-    """Return the first line whose value is another than in the reference's run, or why there is none."""
+    """Return the first line whose value differs from the reference's run, or is no number, or why none is."""
     if not record.traced:
         return None
     lines = tag("pre", "\n".join(record.traced))
-    return tag("section", tag("h3", "First value that differs"), lines, class_="traced")
+    title = "First NaN or infinity" if record.word == "nan" else "First value that differs"
+    return tag("section", tag("h3", title), lines, class_="traced")
 
 
 def _rule(record: Record) -> tuple[tuple[str, str], ...]:
