@@ -432,7 +432,8 @@ class Live:
     def _act(self, area: Area) -> None:
         if not drag_line(self.bench.inspection.compare, area):
             self.mouse.act(area, self.window.density)
-            act_on_picture(self.bench.tracing, self.session.picture.texture, area, self.window.density)
+            if not self.bench.painting.on:
+                act_on_picture(self.bench.tracing, self.session.picture.texture, area, self.window.density)
         self.bench.undo.record(held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
 
     def _picture(self, size: tuple[int, int]) -> moderngl.Texture | None:

@@ -17,7 +17,7 @@ import pytest
 
 from playground import cli
 from playground.engine.planner import smallest_terrain
-from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch, reading_seconds
+from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch, TryTrace, reading_seconds
 from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
 
 from ..loading import load
@@ -274,6 +274,14 @@ def test_what_takes_too_long_is_stopped(sandbox, folder, monkeypatch):
     assert report.error.diagnostics[0].file.endswith("one.glsl")
     assert is_gone(pid)
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+
+
+def test_a_trace_is_tried_and_its_refusal_told(sandbox, folder):
+    sketch = folder.one(GOOD)
+    assert sandbox.run(TryTrace(sketch, "a")).ok
+    assert sandbox.run(TryTrace(sketch, "a", "all")).ok
+    assert "'b'" in str(sandbox.run(TryTrace(sketch, "b")).error)
+    assert "'steps'" in str(sandbox.run(TryTrace(sketch, "a", "steps")).error)
 
 
 @pytest.mark.slow

@@ -267,6 +267,20 @@ def test_the_first_texel_where_a_condition_holds_is_traced(begin: Begin) -> None
     assert "every texel" in tracing.probe_message and tracing.spot == Spot("height", (4, 0))
 
 
+def test_another_sketch_begins_with_nothing_chosen(begin: Begin, tmp_path: Path) -> None:
+    tracing = begin()
+    tracing.pin_at(pixel_of((5, 1)), SIZE)
+    frame(tracing, 3)
+    tracing.keep()
+    (tmp_path / "other").mkdir()
+    for name, text in FILES.items():
+        (tmp_path / "other" / name).write_text(text, encoding="utf-8")
+    tracing.session.open(tmp_path / "other")
+    frame(tracing, 3)
+    assert not tracing.is_pinned and tracing.kept is None and tracing.other() is None
+    assert "nothing is kept" in state_of(tracing)[0]
+
+
 @pytest.mark.parametrize(
     ("line", "expression", "named"), [(9, "x", "line"), (ADD, "sum = 1.0", "only reads")]
 )

@@ -496,7 +496,10 @@ def state_of(tracing: Tracing) -> tuple[str, theme.Rgb]:
         parts.append("its result is the texel's, bit for bit")
     else:
         parts.append("its result differs from the texel's: the driver rounds a recorded sum otherwise")
-    if tracing.other() is not None:
+    if tracing.other() is None:
+        missing = {Beside.KEPT: "nothing is kept yet", Beside.SAVE: "nothing was saved since"}
+        parts += [missing[tracing.beside]] if tracing.beside in missing else []
+    else:
         parts.append("both run alike" if view.difference is None else f"≠ {other_name(tracing)}")
     return "   ".join(parts), theme.palette.dim
 

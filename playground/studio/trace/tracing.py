@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
+from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from playground.engine.non_finite import NotFinite
@@ -89,6 +90,7 @@ class Tracing:
     plain: set[str] = field(default_factory=set)  # passes that are traced in their plain form
     traces: int = 0  # made so far
     inspector: Inspector = field(init=False)
+    _sketch: Path | None = None  # that is traced
     _fixed: Spot | None = None  # a texel that was chosen by number
     _seek: bool = False  # the next trace is to show its first event that is not finite
     _seek_run: int = 0  # the next trace is to show this run, from 1, of the caret's line
@@ -284,6 +286,8 @@ class Tracing:
         """Trace, if anything has changed and it is time to; ``picture`` is what the session returned last."""
         if not self.on or picture is None:
             return
+        if self._sketch != self.session.path:
+            self._begin(self.session.path)
         self._take_report()
         if not self._can_trace:
             return
@@ -299,6 +303,16 @@ class Tracing:
         except PlaygroundError as error:
             self._fail(str(error), wanted)
         self._free_at = self.now() + _REST * (self.now() - start)
+
+    def _begin(self, sketch: Path) -> None:
+        """Begin with another sketch, of which nothing is chosen yet."""
+        if self._sketch is not None:
+            self.pin = self._fixed = self.iteration = self.kept = self._before = self.view = None
+            self.pass_name = self.file = self.probe_message = ""
+            self.plain.clear()
+            self._ready.clear()
+            self._refused.clear()
+        self._sketch = sketch
 
     def _trace(self, spot: Spot, wanted: object) -> None:
         """Trace a texel, or have the sandbox compile the text first; raise what is wrong with either."""
@@ -454,6 +468,7 @@ class Tracing:
             return
         self.session.view.show(probe_map)
         self.session.fit_map()
+        self.probe_message = f"the map shows {probe_map.probe}"
         if self._find is not None:
             self._find = self.session.view.map if isinstance(self.session.view.map, ProbeMap) else None
 
