@@ -130,6 +130,16 @@ def test_the_first_event_that_differs_is_marked() -> None:
     assert TraceView(march_trace(), other=march_trace()).difference is None
 
 
+def test_two_texels_part_where_their_runs_take_different_paths() -> None:
+    other = march_trace(factor=3.0)
+    other.texel = 4, 5
+    view = TraceView(march_trace(), other=other)
+    assert view.difference is not None and view.difference[0] is not None
+    # Of the march from 1: 2, 4, 8, 16 against 3, 9, 27, which is above 20.
+    view.go_to(view.difference[0])
+    assert view.difference[0].line == HIT and loop(view, RAYS).chosen == 2 and loop(view, STEPS).chosen == 2
+
+
 def test_a_trace_of_an_edited_text_is_compared_line_by_line() -> None:
     edited = [*TEXT[:3], "        far = far * 3.0;", *TEXT[4:]]
     before = march_trace(factor=3.0, text=["// new", *edited], shift=1)

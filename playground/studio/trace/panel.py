@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 
 _CODE = 0.52  # fraction of the width that code takes first
 _SLIDER, _SPARK = 124.0, 96.0  # [units of scale 1] widths
+_SHOW, _BACK, _FIND = "Show as a map", "Back to the picture", "First texel where it is true"
 _CLICK = 4.0  # that the mouse may move during a click
 _GUTTER = 5  # letters left of the code: the line's number
 _WORDS = frozenset(
@@ -93,8 +94,42 @@ class TracePanel:
     # ── the head ─────────────────────────────────────────────────────────────
 
     def _head(self, tracing: Tracing, look: Theme) -> None:
-        view, spot, wide = tracing.view, tracing.spot, 10 * imgui.get_font_size()
-        padding = imgui.get_style().frame_padding.x
+        view, wide = tracing.view, 10 * imgui.get_font_size()
+        self._pass(tracing, wide)
+        pinned = tracing.is_pinned
+        label = "Unpin" if pinned else "Pin"
+        note = (
+            "Trace what is under the mouse" if pinned else "Stay at this texel, as by a click on the picture"
+        )
+        unpin = _width_of("Unpin")
+        _flow(unpin)
+        if button(f"{label}##pin", note, wide=unpin):
+            tracing.follow() if pinned else tracing.pin_here()
+        _flow(0.9 * wide)
+        imgui.set_next_item_width(0.9 * wide)
+        self._functions(tracing)
+        bad = view.trace.first_not_finite() if view is not None else None
+        if _flowing("! First not finite", "The line that first gives NaN or infinity", bad is not None):
+            tracing.go_to_not_finite()
+        if _flowing("Keep", "Compare what follows with this trace", view is not None):
+            tracing.keep()
+        _flow(wide)
+        imgui.set_next_item_width(wide)
+        beside = choose("##beside", f"beside: {tracing.beside.value}", Beside, tracing.beside, name=_beside)
+        if beside is not None:
+            tracing.compare(beside)
+        if view is not None and tracing.other() is not None:
+            parts = view.difference is not None
+            if _flowing("≠ First difference", "The first event at which the two part", parts):
+                tracing.go_to_difference()
+        if tracing.can_be_plain and _flowing("Trace its plain form", "It runs first, which may take a while"):
+            tracing.trace_plain()
+        self._steps(tracing, wide)
+        self._files(tracing, look)
+        self._state(tracing, look)
+
+    def _pass(self, tracing: Tracing, wide: float) -> None:
+        spot = tracing.spot
         imgui.set_next_item_width(wide)
         chosen = choose(
             "##pass",
@@ -107,43 +142,6 @@ class TracePanel:
         imgui.set_item_tooltip("The pass that is traced, at the texel of its own under the mouse")
         if chosen is not None:
             tracing.choose_pass(chosen.path)
-        imgui.same_line()
-        pinned = tracing.is_pinned
-        note = (
-            "Trace what is under the mouse again"
-            if pinned
-            else "Stay at this texel; so does a click on the picture"
-        )
-        label = "Unpin" if pinned else "Pin"
-        if button(f"{label}##pin", note, wide=imgui.calc_text_size("Unpin").x + 2 * padding):
-            tracing.follow() if pinned else tracing.pin_here()
-        imgui.same_line()
-        imgui.set_next_item_width(0.9 * wide)
-        self._functions(tracing)
-        imgui.same_line()
-        bad = view.trace.first_not_finite() if view is not None else None
-        if button("! First not finite", "The line that first gives NaN or infinity", enabled=bad is not None):
-            tracing.go_to_not_finite()
-        imgui.same_line()
-        if button("Keep", "Compare what follows with this trace", enabled=view is not None):
-            tracing.keep()
-        imgui.same_line()
-        imgui.set_next_item_width(wide)
-        beside = choose("##beside", f"beside: {tracing.beside.value}", Beside, tracing.beside, name=_beside)
-        if beside is not None:
-            tracing.compare(beside)
-        if view is not None and tracing.other() is not None:
-            imgui.same_line()
-            parts = view.difference is not None
-            if button("≠ First difference", "The first event at which the two part", enabled=parts):
-                tracing.go_to_difference()
-        if tracing.can_be_plain:
-            imgui.same_line()
-            if button("Trace its plain form", "It runs first, which may take a while"):
-                tracing.trace_plain()
-        self._steps(tracing)
-        self._files(tracing, look)
-        self._state(tracing, look)
 
     def _functions(self, tracing: Tracing) -> None:
         view = tracing.view
@@ -168,13 +166,13 @@ class TracePanel:
             imgui.text_colored(theme.colour(ink), fitting(text.replace("\n", "  "), room))
             imgui.set_item_tooltip(text)
 
-    def _steps(self, tracing: Tracing) -> None:
+    def _steps(self, tracing: Tracing, wide: float) -> None:
         """Draw the slider over the steps of a repeated pass."""
         count = tracing.repeats
         if count > 1:
-            imgui.same_line()
+            _flow(wide)
             now = count - 1 if tracing.iteration is None else min(tracing.iteration, count - 1)
-            imgui.set_next_item_width(imgui.get_font_size() * 10)
+            imgui.set_next_item_width(wide)
             number = slide_whole("##step", now + 1, (1, count), lambda n: f"step {n} of {count}")
             if number is not None:
                 tracing.iteration = None if number == count else number - 1
@@ -183,7 +181,7 @@ class TracePanel:
 
     def _code(self, tracing: Tracing, look: Theme) -> None:
         style = imgui.get_style()
-        below = imgui.get_frame_height_with_spacing()
+        below = imgui.get_frame_height_with_spacing() * (2 if _probe_is_broken() else 1)
         with look.font(look.text, theme.SMALL):
             below += imgui.get_text_line_height_with_spacing() if tracing.probe_message else 0.0
         size = ImVec2(0, -below)
@@ -411,27 +409,30 @@ class TracePanel:
     def _probe(self, tracing: Tracing, look: Theme) -> None:
         """Draw the field of an expression, and what shows it."""
         where = f"behind line {tracing.line}" if tracing.line else "behind a line"
+        shows = isinstance(tracing.session.view.map, ProbeMap)
+        labels = _BACK if shows else _SHOW, _FIND
         imgui.align_text_to_frame_padding()
         imgui.text_disabled("Probe")
         imgui.same_line()
-        labels = "Show as a map", "First texel where it is true"
-        wide = sum(imgui.calc_text_size(label).x + 4 * imgui.get_style().frame_padding.x for label in labels)
-        wide += imgui.calc_text_size(where).x + 4 * imgui.get_style().item_spacing.x
-        imgui.set_next_item_width(max(imgui.get_content_region_avail().x - wide, 80.0))
+        wide = imgui.calc_text_size(where).x + imgui.get_style().item_spacing.x
+        if not _probe_is_broken():
+            wide += sum(_width_of(label) + imgui.get_style().item_spacing.x for label in labels)
+        imgui.set_next_item_width(-wide)
         with look.font(look.code):
             hint = "an expression: select it in a line, or type it"
             _, tracing.expression = imgui.input_text_with_hint("##probe", hint, tracing.expression)
         imgui.same_line()
         imgui.text_disabled(where)
+        if not _probe_is_broken():
+            imgui.same_line()
         can = bool(tracing.line and tracing.expression.strip())
-        imgui.same_line()
-        if isinstance(tracing.session.view.map, ProbeMap):
-            if button("Back to the picture", "The sketch's own view again"):
+        if shows:
+            if button(_BACK, "The sketch's own view again"):
                 tracing.session.show(None)
-        elif button(labels[0], "Its value in every texel; legend and histogram: in the panel", enabled=can):
+        elif button(_SHOW, "Its value in every texel; legend and histogram: in the panel", enabled=can):
             tracing.show_probe()
         imgui.same_line()
-        if button(labels[1], "The first texel, from the south-west, where it is not 0", enabled=can):
+        if button(_FIND, "The first texel, from the south-west, where it is not 0", enabled=can):
             tracing.show_probe(find=True)
         if tracing.probe_message:
             with look.font(look.text, theme.SMALL):
@@ -450,6 +451,28 @@ class _Grid:
     line: float
     wide: float
     code: float  # width of the code
+
+
+def _probe_is_broken() -> bool:
+    """Return whether the probe's buttons need a line of their own."""
+    return imgui.get_window_width() < 46 * imgui.get_font_size()
+
+
+def _width_of(label: str) -> float:
+    return imgui.calc_text_size(label).x + 2 * imgui.get_style().frame_padding.x
+
+
+def _flow(wide: float) -> None:
+    """Go on in the same line where what comes has room in it."""
+    imgui.same_line()
+    if imgui.get_content_region_avail().x < wide:
+        imgui.new_line()
+
+
+def _flowing(label: str, note: str, enabled: bool = True) -> bool:
+    """Draw a button in the same line, or in the next; return whether it is pressed."""
+    _flow(_width_of(label))
+    return button(label, note, enabled=enabled)
 
 
 def _stepper(word: str, number: int, count: int, note: str, look: Theme) -> int | None:

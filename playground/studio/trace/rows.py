@@ -111,8 +111,15 @@ class TraceView:
 
     @cached_property
     def difference(self) -> tuple[Event | None, Event | None] | None:
-        """The first events at which this trace and the other part; None for nowhere, or no other."""
-        return first_difference(self.trace, self._other.trace) if self._other is not None else None
+        """The first events at which this trace and the other part; None for nowhere, or no other.
+
+        Two texels differ in their arguments already: of them it is where their runs take different paths.
+        """
+        if self._other is None:
+            return None
+        one, other = self.trace, self._other.trace
+        parted = first_difference(one, other, values=False) if one.texel != other.texel else None
+        return parted or first_difference(one, other)
 
     def rows(self, path: str) -> tuple[Row, ...]:
         """Return the lines of a file, with what they gave in the chosen moment."""
