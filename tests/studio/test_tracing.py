@@ -14,11 +14,12 @@ from playground.engine.trace.probe import ProbeMap
 from playground.errors import SandboxTimeout
 from playground.studio.inspect.inspector import texel_of_map
 from playground.studio.keys import close_one, open_layers
-from playground.studio.trace.panel import TracePanel, state_of, title_of
-from playground.studio.trace.rows import Row
+from playground.studio.trace.panel import TracePanel, spark_points, state_of, title_of, word_at
+from playground.studio.trace.rows import Row, TraceView
 from playground.studio.trace.tracing import Beside, Spot, Tracing
 
 from ..sketch_texts import map_of_height
+from .hand_traces import FILE, march_trace
 from .panel_desk import Bare
 from .session_desk import OpenSession
 
@@ -305,6 +306,46 @@ def test_a_probe_that_does_not_compile_leaves_the_picture(begin: Begin) -> None:
     compiler.answer = SandboxReport(False, SandboxTimeout("'summ' undeclared"))
     frame(tracing, 2)
     assert "summ" in tracing.probe_message and not isinstance(tracing.session.view.map, ProbeMap)
+
+
+@pytest.mark.parametrize("wide", [950.0, 420.0])
+def test_the_window_draws_all_that_a_trace_may_have(bare: Bare, wide: float) -> None:
+    tracing, panel, draw = bare.bench.tracing, TracePanel(), bare.draw
+    tracing.on, tracing.file, tracing.line = True, FILE, 4
+    tracing.kept, tracing.beside = march_trace(factor=3.0), Beside.KEPT
+    tracing.view = TraceView(march_trace(), other=tracing.kept)
+    tracing.probe_message, tracing.expression = "the map shows far behind line 4", "far"
+
+    def with_trace() -> None:
+        draw()
+        panel.draw(tracing, bare.theme, (1280.0 - wide, 0.0, wide, 900.0))
+
+    bare.draw = with_trace
+    event = tracing.view.trace.first_not_finite()
+    assert event is not None
+    tracing.go_to(event)
+    bare.run_frames(3)
+    bare.click("≠ First difference")
+    assert tracing.line in (4, 5)
+    bare.click("##slide", 0.0)  # of the first in sight: the calls of march
+    assert tracing.view.selection.calls and tracing.view.rows(FILE)[0].head is not None
+    start = tracing.view.rows(FILE)[0].head.number
+    assert start == 1
+    tracing.message = "a texel that is not there"
+    tracing.view = None
+    bare.run_frames(2)
+
+
+def test_words_and_series_of_the_window() -> None:
+    code = "    sum += march.foot * rows[i].x;"
+    assert code[slice(*word_at(code, code.index("foot")))] == "march.foot"
+    assert code[slice(*word_at(code, code.index("march")))] == "march"
+    assert code[slice(*word_at(code, code.index("rows")))] == "rows"
+    assert word_at(code, 0) == (0, 0)
+    points = spark_points((1.0, None, float("nan"), 3.0), (0.0, 0.0, 30.0, 14.0))
+    assert [x for x, _, _ in points] == [0.0, 10.0, 20.0, 30.0]
+    assert [finite for _, _, finite in points] == [True, None, False, True]
+    assert points[0][1] > points[-1][1], "y goes down"
 
 
 def test_the_window_of_a_trace_draws_and_esc_closes_it(bare: Bare) -> None:
