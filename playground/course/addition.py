@@ -6,6 +6,7 @@ What draws a lesson is imported with the first that is shown: a window may show 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, cast
 
 from imgui_bundle import imgui
@@ -17,6 +18,7 @@ from playground.course.window.reader import Reader
 from playground.studio.addition import Addition, Layer
 from playground.studio.bench import Host, Workbench
 from playground.studio.keys import Key
+from playground.studio.start.page import Card
 
 if TYPE_CHECKING:
     from playground.course.window.panel import LessonPanel
@@ -58,6 +60,18 @@ class Lessons(Addition):
     def toggle(self) -> None:
         """Show or hide the panel."""
         self.reader.toggle()
+
+    def start_cards(self) -> Iterator[Card]:
+        """Yield a card for each lesson."""
+        for summary in self.reader.summaries:
+            yield Card(
+                f"lesson {summary.name}",
+                summary.title,
+                summary.goal,
+                partial(self.reader.open, summary.name),
+                "lesson",
+                words=summary.name.replace("_", " "),
+            )
 
     def layers(self) -> Iterator[Layer]:
         """Yield the panel, where it is shown."""

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from playground.studio.start.page import Card
 
 Layer = tuple[str, Callable[[], None]]
 """The name of something open, and what closes it."""
@@ -53,6 +56,10 @@ class Addition:
 
     def popups(self) -> Iterable[Layer]:
         """Return the open windows of its own, topmost first: Esc closes them before the window's panels."""
+        return ()
+
+    def start_cards(self) -> Iterable[Card]:
+        """Return what it adds to the start page, as lessons."""
         return ()
 
     def status(self) -> Mapping[str, object]:

@@ -25,7 +25,7 @@ from playground.engine.programs import warnings_of
 from playground.engine.sandbox import Sandbox
 from playground.engine.trace.live_texel import live_file
 from playground.errors import Diagnostic, PlaygroundError
-from playground.paths import DEFAULT_SKETCH
+from playground.paths import DEFAULT_SKETCH, PLAIN_SKETCH
 from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
 from playground.sketch.find import find
 from playground.sketch.load import load
@@ -67,6 +67,7 @@ from playground.studio.problems.problems import TerminalErrors, Warnings, to_log
 from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.remote.remotes import Remotes
 from playground.studio.session import Session
+from playground.studio.start.panel import StartPanel
 from playground.studio.status import Status
 from playground.studio.trace.live import LiveTexelFile
 from playground.studio.trace.panel import TracePanel, act_on_picture, draw_mark
@@ -98,6 +99,7 @@ def run(
     sandbox: Sandbox | None = None,
     report: Callable[[str], None] = to_log,
     remotes: Remotes | None = None,
+    start_page: bool = False,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
@@ -107,13 +109,14 @@ def run(
     ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
     ``sandbox``: one that has been started already, and is its owner's.
     ``report`` receives each error, for the terminal. ``remotes`` are closed by who opened them.
+    ``start_page``: the window begins with it.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, or nothing that the request names, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
     """
     for module in rooms.modules("addition"):
         module.check_request(request or {})
-    path, unpacked = opened_from(Path(sketch)) if sketch else (find(DEFAULT_SKETCH), "")
+    path, unpacked = opened_from(Path(sketch)) if sketch else (find(PLAIN_SKETCH if start_page else DEFAULT_SKETCH), "")
     checked = _checked(path, values or {}, dialect)
     if software:
         prefer_software()
@@ -157,6 +160,9 @@ def run(
             stack.callback(addition.close)
         stack.callback(live.finish_painting, report)
         stack.callback(autosave.close)
+        stack.callback(live.note_recent)
+        if start_page:
+            live.bench.start.open()
         stack.callback(live.caching.close)
         try:
             live.run(time_limit)
@@ -238,9 +244,10 @@ class Live:
         self.terminal = TerminalErrors(report)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
+        self.start_panel = StartPanel(window.ctx)
         self.status = Status()
         autosave.compare = self.bench.inspection.compare
-        self.bench.actions.opens = autosave.open
+        self.bench.actions.opens = self._open
         self._settling = _SETTLES
         self._last = time.perf_counter()
         self._reloads = session.last_reload
@@ -297,6 +304,21 @@ class Live:
         self.bench.files.leaving, self._settling = True, _SETTLES
         return True
 
+    def _open(self, path: Path) -> None:
+        """Open another sketch with what is remembered of it; the one that is left becomes a recent one."""
+        self.note_recent()
+        self.autosave.open(path)
+
+    def note_recent(self) -> None:
+        """Put the sketch that is shown first among the recent ones, with its picture."""
+        session = self.session
+        sketch, frame = session.sketch, None
+        if session.draws and sketch is not None and not any(a.shows_own for a in self.additions):
+            with suppress(PlaygroundError):
+                frame = session.read()
+            title = sketch.title.strip() or session.path.stem
+            self.bench.start.recent.note(session.path, title, None if frame is None else frame.array)
+
     def finish_painting(self, report: Callable[[str], None]) -> None:
         """Wait until what is painted is written; the terminal learns of what cannot be."""
         for error in self.bench.painting.close():
@@ -307,6 +329,8 @@ class Live:
         self.bench.inspection.release()
         self.bench.tracing.release()
         self.live_texel.close()
+=======
+        self.start_panel.release()
         for addition in self.additions:
             addition.release()
         self.painter.release()
@@ -323,6 +347,7 @@ class Live:
         self.session.rebuild(Engine(self.window.ctx, driver=driver))
         self.caching.attach(self.session.engine)
         self.painter = Painter(self.window.ctx)
+        self.start_panel = StartPanel(self.window.ctx)
         self._settling = _SETTLES
 
     def _patience(self) -> float:
@@ -347,7 +372,7 @@ class Live:
             return min(self.caching.patience, QUIET / 2)
         if self.autosave.waits:
             return QUIET / 2
-        if self.bench.notices.items:
+        if self.bench.notices.items or self.start_panel.waits:
             return 0.1
         if imgui.get_io().want_text_input:
             return 0.1
@@ -373,6 +398,9 @@ class Live:
         look.choose(theme.LIGHT if bench.interface.preferences.is_light else theme.DARK)
         window.begin()
         bench.inspection.begin()
+        if bench.start.shown:
+            self._draw_start_page()
+            return
         full = next((a.full_screen for a in self.additions if a.full_screen is not None), None)
         if full is not None:
             self._draw_full(full)
@@ -403,6 +431,24 @@ class Live:
         guard.run("showing the picture", lambda: self._show(picture, pixels), None)
         window.end()
         guard.run("what follows a picture", self._follow_up, None)
+
+    def _draw_start_page(self) -> None:
+        """Draw the rest of a frame while the start page fills the window: no sketch is drawn."""
+        window, bench, guard = self.window, self.bench, self.guard
+        guard.draw("the start page", lambda: self.start_panel.draw(bench.start, window.theme), None)
+        guard.draw("what a key asks for", lambda: act_on_keys(bench), None)
+        if window.keys.waits:
+            window.skip()
+            return
+        room = imgui.get_main_viewport().size
+        bench.take_notes()
+        area: Area = (0.0, 0.0, room.x, room.y)
+        guard.draw("the notices", lambda: draw_notices(bench.notices, window.theme, area), None)
+        guard.draw("what was dropped", lambda: draw_drops(self.drops, window.theme), None)
+        guard.run("showing the page", lambda: self._show(None, (0, 0, *window.pixels)), None)
+        window.end()
+        self.status.write(bench, ())
+        self._settling = max(self._settling, 0 if bench.start.shown else _SETTLES)
 
     def _draw_full(self, full: FullScreen) -> None:
         """Draw the rest of a frame while a room fills the window: the picture, and what is around it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,6 +23,7 @@ from playground.studio.problems.problems import Problems
 from playground.studio.remote.controllers import Controllers
 from playground.studio.save.sketch_file import SketchFile
 from playground.studio.session import Session
+from playground.studio.start.page import Card, StartPage
 from playground.studio.trace.tracing import TraceSandbox, Tracing
 
 if TYPE_CHECKING:
@@ -58,10 +59,16 @@ class Workbench:
         self.keyframes = KeyframeEdits(session, self.notices, self.undo, self.file)
         self.files = OpenFiles(self.notices, opener or Opener())
         self.interface = Interface(preferences=preferences or Preferences())
+        self.start = StartPage(self.actions, more=self._cards)
         self.panes = Panes(self.interface.preferences)
         self.tabs: list[Tab] = []  # of the strip below the picture
         self.additions: list[Addition] = []  # of the rooms that can be removed
         self.controllers = Controllers(session, self.notices)
+
+    def _cards(self) -> Iterator[Card]:
+        """Yield what rooms add to the start page."""
+        for addition in self.additions:
+            yield from addition.start_cards()
 
     def take_notes(self) -> None:
         """Show what the session and the editors report, and remove notices that are over."""

@@ -26,7 +26,6 @@ from playground.commands.arguments import (
 from playground.commands.options import flag, value
 from playground.commands.standard_input import kept
 from playground.errors import ContextError, ParameterError, PlaygroundError
-from playground.paths import DEFAULT_SKETCH
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import complain, say
 
@@ -217,6 +216,7 @@ def open_window(
         from playground.studio.app import run
 
         options |= {"cache_limit": limit, "report": complain, "sandbox": sandbox, "remotes": opened}
+        options["start_page"] = not sketch and not (options.get("request") or {}).get("lesson")
         status = run(sketch, size=size, software=renderer.software, values=values, **options)
     if status:
         raise typer.Exit(status)
@@ -228,7 +228,7 @@ def open_default(renderer: Renderer) -> bool:
 
     if not where_to_show(os.environ, sys.platform):
         return False
-    open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, request={"welcome": True})
+    open_window("", DEFAULT_PICTURE, renderer, request={"welcome": True})
     return True
 
 

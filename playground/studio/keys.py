@@ -70,6 +70,8 @@ def _open(bench: Workbench) -> Iterator[Layer]:
     inspection = bench.inspection
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         yield "popup", lambda: _close_popup(bench)
+    if bench.start.shown:
+        yield "start page", bench.start.close
     if bench.interface.keymap_shown:
         yield "keys", bench.interface.toggle_keymap
     for addition in bench.additions:
@@ -148,6 +150,7 @@ _KEYS: tuple[Key | None, ...] = (
     ),
     Key(_K.s, "S", "save a PNG", lambda b: b.actions.save_picture(), brief="save"),
     Key(_K.tab, "Tab", "hide the panel", lambda b: b.interface.toggle_panel(), brief="hide"),
+    Key(_K.o, "O", "start page: new, open, recent, shipped", lambda b: b.start.toggle(), brief="open"),
     None,  # the place of those of rooms
     Key(_K.none, "/", "search the parameters", lambda b: b.interface.search(), letter="/"),
     Key(_K.f11, "F11", "fill the screen, or no longer", lambda b: b.window.toggle_full()),
@@ -233,6 +236,10 @@ def act_on_keys(bench: Workbench) -> None:
     if keeps_keys(bench.interface.ahead) or io.want_text_input or io.key_alt:
         return
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
+        return
+    if bench.start.shown:
+        if imgui.is_key_pressed(_K.o, repeat=False) and not ctrl:
+            bench.start.close()
         return
     typed = letters()
     sign = pressed_sign(bench.window.sign_held) if ctrl else ""
