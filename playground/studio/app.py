@@ -116,7 +116,9 @@ def run(
     """
     for module in rooms.modules("addition"):
         module.check_request(request or {})
-    path, unpacked = opened_from(Path(sketch)) if sketch else (find(PLAIN_SKETCH if start_page else DEFAULT_SKETCH), "")
+    path, unpacked = (
+        opened_from(Path(sketch)) if sketch else (find(PLAIN_SKETCH if start_page else DEFAULT_SKETCH), "")
+    )
     checked = _checked(path, values or {}, dialect)
     if software:
         prefer_software()
@@ -329,7 +331,6 @@ class Live:
         self.bench.inspection.release()
         self.bench.tracing.release()
         self.live_texel.close()
-=======
         self.start_panel.release()
         for addition in self.additions:
             addition.release()

@@ -50,7 +50,7 @@ def test_a_picture_is_that_of_the_reference(name: str) -> None:
     wide, high = atlas.size
     part = atlas.crop((round(left * wide), round(top * high), round(right * wide), round(bottom * high)))
     assert part.size == CELL
-    difference = np.abs(np.asarray(part, float) - np.asarray(shrunk(reference), float))
+    difference = np.abs(np.asarray(part, float) - np.asarray(shrunk(made.read_picture(reference)), float))
     assert difference.mean() < LOSS
 
 

@@ -14,13 +14,12 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from playground.errors import PlaygroundError
 from playground.files import read_regular, write_file
 from playground.json_text import read_json
 from playground.paths import state_folder
-from playground.studio.start.thumbnails import CELL
+from playground.studio.start.thumbnails import shrunk
 
 _MOST = 12
 _FORMAT = 1
@@ -67,14 +66,11 @@ class Recent:
                 self._store(path, pixels)
 
     def _store(self, path: Path, pixels: NDArray[np.uint8]) -> None:
-        picture = Image.fromarray(np.ascontiguousarray(pixels[..., :3]))
-        wide, high = picture.size
-        scale = min(wide / CELL[0], high / CELL[1])
-        left, top = (wide - scale * CELL[0]) / 2, (high - scale * CELL[1]) / 2
-        box = (left, top, left + scale * CELL[0], top + scale * CELL[1])
+        from PIL import Image
+
         file = self._picture(path)
         file.parent.mkdir(parents=True, exist_ok=True)
-        picture.resize(CELL, Image.Resampling.BOX, box=box).save(file, quality=85)
+        shrunk(Image.fromarray(np.ascontiguousarray(pixels[..., :3]))).save(file, quality=85)
 
     def _picture(self, path: Path) -> Path:
         name = hashlib.blake2b(str(path).encode(), digest_size=12).hexdigest()

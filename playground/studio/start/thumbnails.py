@@ -12,11 +12,12 @@ import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
-
-from PIL import Image
+from typing import TYPE_CHECKING, Any
 
 from playground.paths import GLSL, SCREENSHOTS, SKETCHES
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 CELL = (192, 108)
 """Width and height of one picture [pixels]."""
@@ -70,6 +71,8 @@ def read_atlas() -> Image.Image:
 
 def read_picture(file: str | Path) -> Image.Image:
     """Return a picture; raise ``OSError`` where it cannot be read."""
+    from PIL import Image  # takes a while to read: only pages that are shown need it
+
     with Image.open(file) as picture:
         return picture.convert("RGB")
 
@@ -88,6 +91,8 @@ def reference_of(name: str) -> Path | None:
 
 def make_atlas() -> None:
     """Write the pictures and their table."""
+    from PIL import Image
+
     rows: list[dict[str, object]] = []
     pictures: list[Image.Image] = []
     for path in sorted(SKETCHES.glob("*.toml")):
@@ -95,7 +100,7 @@ def make_atlas() -> None:
         cell = -1
         if reference is not None:
             cell = len(pictures)
-            pictures.append(shrunk(reference))
+            pictures.append(shrunk(read_picture(reference)))
         rows.append({"name": path.stem, **_described(path), "cell": cell})
     high = -(-len(pictures) // _ACROSS) * CELL[1]
     atlas = Image.new("RGB", (_ACROSS * CELL[0], high))
@@ -106,9 +111,10 @@ def make_atlas() -> None:
     _TABLE.write_text(f'{{"sketches": [\n{lines}\n]}}\n', encoding="utf-8")
 
 
-def shrunk(file: Path) -> Image.Image:
+def shrunk(picture: Image.Image) -> Image.Image:
     """Return a picture as large as one of the atlas, its edges cut where it is wider or higher."""
-    picture = read_picture(file)
+    from PIL import Image
+
     wide, high = picture.size
     scale = min(wide / CELL[0], high / CELL[1])
     left, top = (wide - scale * CELL[0]) / 2, (high - scale * CELL[1]) / 2
