@@ -426,11 +426,12 @@ class Visited(Exception):
 
 
 class Search(Execution):
-    """Runs the loops around one step again, from their first iteration to one run of the step.
+    """Runs the loops around one step again, to one run of the step.
 
-    Nothing of it goes into the cache or a frame's record. ``results`` are those of the frame's steps that
-    change with no loop, ``visit`` is called with the step, its inputs and where it is in the loops; its
-    textures are the loops', which release them.
+    The outermost begins with the latest state of it that is kept, if there is one. Nothing goes into the
+    cache or a frame's record. ``results`` are those of the frame's steps that change with no loop, ``visit``
+    is called with the step, its inputs and where it is in the loops; its textures are the loops', which
+    release them.
     """
 
     def __init__(
@@ -455,8 +456,13 @@ class Search(Execution):
         Return whether there was one.
         """
         self._target = path, {loop.path: number for loop, number in zip(loops, iterations, strict=True)}
+        loop, states = loops[0], self.cache.states
+        key = self.keys.loops.get(loop.path, "")
+        done = states.latest(loop.path, key, iterations[0])
+        kept = states.peek(loop.path, key, done) if done else {}
+        copies = {path: self.runner.kernels.copied(result) for path, result in kept.items()}
         try:
-            with LoopState(loops[0], Cached({}), self.runner.pool) as state:
+            with LoopState(loop, Cached(copies, done), self.runner.pool) as state:
                 self._run_loop(state, {}, {})
                 _give(self.runner.pool, state.take())
         except Visited:

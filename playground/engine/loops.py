@@ -257,6 +257,10 @@ class KeptStates:
         before = self.latest(path, key, number)
         return number > before and number - before >= share * (now - number)
 
+    def peek(self, path: str, key: str, number: int) -> State:
+        """Return a state that there is; it stays."""
+        return self._kept[path][key].states[number]
+
     def take(self, path: str, key: str, number: int) -> State:
         """Hand over a state that there is; it is the caller's."""
         return self._kept[path][key].pop(number)

@@ -182,6 +182,16 @@ def test_a_pass_in_a_loop_is_traced_in_any_of_its_iterations(any_engine, folder)
     assert trace.outputs["a"] == (15.0,) == (any_engine.read(sketch, "a")[3, 3],)
 
 
+def test_a_loop_over_frames_goes_on_from_a_state_that_is_kept(any_engine, folder):
+    sketch = folder.one(ADD, more='repeat = "frames"\nfeedback = { state = "a" }\n')
+    expected = any_engine.read(sketch, "a", time=0.5)
+    runs, kept = dict(any_engine.runs), len(any_engine.cache.states)
+    trace = any_engine.trace(sketch, "a", texel=(3, 3), time=0.5)
+    assert kept and trace.iteration == (30,) and trace.is_exact
+    assert trace.calls[0]["before"] == sum(range(31)) and trace.outputs["a"] == (expected[3, 3],)
+    assert dict(any_engine.runs) == runs and len(any_engine.cache.states) == kept
+
+
 SLOPE = """#version 330
 out vec4 colour;
 void main() {
@@ -373,9 +383,10 @@ def test_a_text_that_cannot_be_read_is_refused_at_its_line(any_engine, folder):
 
 # ── every shipped sketch ─────────────────────────────────────────────────────
 
-ROUNDED = {
-    "gradient_noise/sum", "texturing/height_blend/ragged", "erosion/terraces",
-}  # fmt: skip
+ROUNDED = (
+    "erosion/terraces.glsl", "generation/dunes.glsl", "generation/gradient_noise/warping.glsl",
+    "generation/gradient_noise/sum.glsl", "from_elsewhere/dunes.frag", "height_blend/ragged.glsl",
+)  # fmt: skip
 """Kernels whose recorded sums Mesa rewrites: their last bits may differ, by 2e-5 of the value."""
 TRACED = (TexelKernel, PlainFragment, Draw)
 TEXELS = 3
@@ -404,6 +415,6 @@ def test_traces_of_shipped_passes_have_the_texels_bits(any_engine, name):
 
 def is_rounded(trace: Trace, path: str) -> bool:
     """Return whether a kernel is one that Mesa rounds otherwise, and only the last bits differ."""
-    known = any(path.endswith(f"{name}.glsl") for name in ROUNDED)
+    known = path.endswith(ROUNDED)
     pairs = [(trace.outputs[name], values) for name, values in trace.texel_values.items()]
     return known and all(np.allclose(one, other, rtol=2e-5, atol=1e-6) for one, other in pairs)
