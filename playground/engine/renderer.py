@@ -139,12 +139,12 @@ class Renderer:
         self._context.make_current()
         self._log_counts()
         self.record = FrameRecord()
+        if self._tracer is not None:
+            self._tracer.release()  # before the pool, to which it gives textures
         self.cache.clear()
         self.runner.pool.clear()
         self.runner.release()
         self._timer = None
-        if self._tracer is not None:
-            self._tracer.release()
         self._context.release()
 
     def _log_counts(self) -> None:

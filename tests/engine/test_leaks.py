@@ -157,6 +157,18 @@ def test_release_gives_all_back(ctx, sketch, alive, driver):
     assert ctx.error == "GL_NO_ERROR"
 
 
+def test_traces_hold_no_more_with_time_and_give_all_back(ctx, sketch, alive):
+    before, seen = total(alive), []
+    with small_engine(ctx, "fragment") as engine:
+        for i in range(40):
+            engine.render(sketch.with_values({"height.bumps": i}), size=(64, 36))
+            for path, texel in (("height", (i, 3)), ("turned", (8, i)), ("view", (32, 18))):
+                assert engine.trace_frame(path, texel=texel).calls
+            seen.append(sum(total(alive).values()))
+        assert max(seen[20:]) <= max(seen[:20])
+    assert total(alive) == before
+
+
 def test_an_engine_that_was_released_works_again(ctx, sketch):
     engine = Engine(ctx)
     first = engine.render(sketch, size=(64, 36)).array
