@@ -27,13 +27,12 @@ from playground.shader.syntax.nodes import (
 )
 from playground.shader.syntax.parser import parse
 from playground.shader.syntax.symbols import CallSite, Symbol, Symbols, has_same_signature, resolve
+from playground.shader.syntax.tokens import directive, tokenize
 
 _MAYBE_FIXED = re.compile(r"\bivec2\s*\(\s*\d")
 _MARK = re.compile(r"^[ \t]*#(?:[^\n\\]|\\\n|\\.)*|[{};]", re.MULTILINE)  # ends of parts; directives whole
-_DEFINE = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)(?:[^\n\\]|\\\n|\\.)*", re.MULTILINE)
-_WORD = re.compile(r"[A-Za-z_]\w*")
 _UNIFORM = re.compile(r"\buniform\b[^;]*?\bsampler2D\s+([A-Za-z_]\w*)")
-_COORDINATE = re.compile(r"0|[1-9]\d{0,3}")
+_MAX_DIGITS = 4  # of a coordinate
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,10 +137,11 @@ def _reads(code: str) -> _Reads:
 
 
 def _with_samplers(code: str) -> str:
-    """Return a text with blanks in place of the functions that name no sampler: a third of it is parsed."""
-    directives = [(set(_WORD.findall(match[0])), match[1]) for match in _DEFINE.finditer(code)]
+    """Return a text with blanks in place of the functions that name no sampler: half of it is parsed."""
     words = {"sampler2D", "texelFetch", *_UNIFORM.findall(code)}
-    while new := {name for body, name in directives if name not in words and body & words}:
+    defines = [directive(line) for line in code.split("\n") if "define" in line]
+    macros = [[one.text for one in tokenize(text)[0]] for word, text in defines if word == "define" and text]
+    while new := {name for name, *body in macros if name not in words and not words.isdisjoint(body)}:
         words |= new
     names_one = re.compile(rf"\b(?:{'|'.join(words)})\b").search
     parts, start, depth, opens = list[str](), 0, 0, -1
@@ -275,8 +275,14 @@ def _texel(node: Node) -> tuple[int, int] | None:
     if not isinstance(node, Call) or node.name != "ivec2" or node.arrays or not 1 <= len(node.arguments) <= 2:
         return None
     texts = [one.text for one in node.arguments if isinstance(one, Literal)]
-    is_texel = len(texts) == len(node.arguments) and all(map(_COORDINATE.fullmatch, texts))
-    return (int(texts[0]), int(texts[-1])) if is_texel else None
+    if len(texts) != len(node.arguments) or not all(map(_is_coordinate, texts)):
+        return None
+    return int(texts[0]), int(texts[-1])
+
+
+def _is_coordinate(text: str) -> bool:
+    """Return whether a literal is a whole number, in decimal."""
+    return text.isdecimal() and len(text) <= _MAX_DIGITS and (text == "0" or text[0] != "0")
 
 
 def _components(swizzle: str) -> frozenset[int]:
