@@ -140,7 +140,8 @@ def _with_samplers(code: str) -> str:
     """Return a text with blanks in place of the functions that name no sampler: half of it is parsed."""
     words = {"sampler2D", "texelFetch", *_UNIFORM.findall(code)}
     defines = [directive(line) for line in code.split("\n") if "define" in line]
-    macros = [[one.text for one in tokenize(text)[0]] for word, text in defines if word == "define" and text]
+    macros = [[one.text for one in tokenize(text)[0]] for word, text in defines if word == "define"]
+    macros = [macro for macro in macros if macro]
     while new := {name for name, *body in macros if name not in words and not words.isdisjoint(body)}:
         words |= new
     names_one = re.compile(rf"\b(?:{'|'.join(words)})\b").search
