@@ -11,7 +11,6 @@ from lsprotocol import types
 from playground.errors import Diagnostic
 from playground.lsp.documents import Document, Documents
 from playground.lsp.names import Syntax, syntax_of, word_at, words
-from playground.lsp.rename import references
 from playground.lsp.shader import Shader, shader_of
 from playground.paths import shown
 from playground.shader.reserved_names import GLSL_WORDS, MATCHES, TOWARDS, WIRED
@@ -135,12 +134,15 @@ def highlights(document: Document, documents: Documents, at: int) -> list[types.
     """Return where a text has the name at a place; of a uniform's declaration, what it can change as well."""
     shader = shader_of(document, documents)
     name, start = word_at(document.text, at)
-    syntax = syntax_of(document.text)
-    written = set(_written(syntax))
+    unit = shader.unit
+    is_own = bool(name) and name not in GLSL_WORDS
+    meanings = unit.meanings(document.path, start, name) if is_own else set()
+    places = [unit.origin(each.at) for each in unit.syntax.occurrences(name) if each.meaning in meanings]
+    written = set(_written(syntax_of(document.text)))
     found = []
-    for place, end in references(document, documents, at).get(document.path, ()):
+    for place in sorted({place for path, place in places if path == document.path}):
         kind = types.DocumentHighlightKind.Write if place in written else types.DocumentHighlightKind.Read
-        found.append(types.DocumentHighlight(document.range(place, end), kind))
+        found.append(types.DocumentHighlight(document.range(place, place + len(name)), kind))
     if any(p.name == name and p.file == str(document.path) for p in shader.parameters) and start in written:
         for path, begin, end in influence(shader, name, start) or ():
             if path == document.path:
