@@ -301,6 +301,12 @@ PICTURES_HELP = help_text(
     "Draw every picture of a lesson into a folder, as PNG.",
     "playground lesson pictures diamond_square -o pictures",
 )
+TRACE_HELP = help_text(
+    "Print the traces of a lesson: the values of one texel beside the code, then the table of their loop.\n\n"
+    "What a question asks for is printed as ?. In a pipe, the table's columns are separated by tabs.",
+    "playground lesson trace shadows",
+    "playground lesson trace shadows march --lang fr",
+)
 TRANSLATED_HELP = help_text(
     "Mark a translation as up to date with today's English.\n\n"
     "Writes the hashes of the English blocks into it. It must have as many blocks, of the same kinds.",
@@ -438,6 +444,41 @@ def pictures(
             write_png(path, draw(engine, picture.scene).array)
             print(path)
             advance()
+
+
+@app.command("trace", help=TRACE_HELP)
+def trace(
+    ctx: typer.Context,
+    name: NameArgument,
+    block: Annotated[str, positional("BLOCK", "One of its traces; all by default.")] = "",
+    lang: Language = "",
+    software: options.Software = False,
+) -> None:
+    """Print the traces of a lesson."""
+    from playground.course.document import plain
+    from playground.course.library import lesson_file
+    from playground.course.measures import filled
+    from playground.course.model import Trace
+    from playground.course.read import read_lesson
+    from playground.course.traces import numbers_in, traced
+
+    lesson_file(name)  # says so where there is none
+    lesson = read_lesson(name, read_language(lang))
+    blocks = {each.name: each for each in lesson.blocks if isinstance(each, Trace)}
+    if block and block not in blocks:
+        hint = nearest(block, blocks) or "; it has none"
+        raise SketchError(f"lesson {name} has no trace '{block}'{hint}")
+    if not blocks:
+        raise SketchError(f"lesson {name} has no trace")
+    with ctx.obj.or_else(software).open_engine() as engine:
+        for each in [blocks[block]] if block else blocks.values():
+            lines = traced(engine, lesson, each)
+            print(f"{each.name}: glsl/{lines.file}, texel {lines.texel}")
+            print(lines.text())
+            if lines.steps:
+                rows = [[str(lines.steps[i]), *(lines.cell(c, i) for c in lines.columns)] for i in lines.rows]
+                print_table("", [lines.loop, *lines.columns], rows)
+            note(plain(filled(each.caption, numbers_in(lines), lesson.language)))
 
 
 @app.command("build", help=BUILD_HELP)

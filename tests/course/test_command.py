@@ -34,7 +34,7 @@ def run(*arguments):
 
 def test_list_in_a_pipe(texts, capsys):
     assert run("list") == 0
-    assert capsys.readouterr().out == "0\tsmall\tA small lesson\t5 min\t13 min\tAll\n"
+    assert capsys.readouterr().out == "0\tsmall\tA small lesson\t6 min\t14 min\tAll\n"
 
 
 def test_list_in_french_and_as_json(texts, capsys, monkeypatch):
@@ -46,8 +46,8 @@ def test_list_in_french_and_as_json(texts, capsys, monkeypatch):
         "name": "small",
         "title": "Une petite leçon",
         "goal": "Connaître $r^2$.",
-        "minutes": 5,
-        "exercise_minutes": 13,
+        "minutes": 6,
+        "exercise_minutes": 14,
         "part": "Tout",
     }
 

@@ -370,3 +370,23 @@ def test_a_question_is_handed_out_and_comes_back_graded(tmp_path, capsys):
     assert main(["lesson", "grade", str(tmp_path / "class"), "-o", str(tmp_path / "report"), "--json"]) == 0
     marks = json.loads(capsys.readouterr().out)[0]["exercises"]
     assert marks["shadows-third-step"]["points"] == 1 and marks["shadows-write-march"]["points"] == 0
+
+
+def test_the_terminal_prints_code_values_and_table(capsys):
+    assert main(["lesson", "trace", "shadows", "march"]) == 0
+    out = capsys.readouterr().out
+    assert "ray = 42.87 | 85.74 | ? |" in out and "3\t?\t0\tfalse\n" in out and "128.6" not in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ("shadows mrch", ("no trace 'mrch'", "did you mean 'march'")),
+        ("flight", ("flight", "no trace")),
+        ("shadws", ("no lesson 'shadws'", "shadows")),
+    ],
+)
+def test_the_terminal_refuses_a_trace_that_is_not_there(arguments, words, capsys):
+    assert main(["lesson", "trace", *arguments.split()]) == 2
+    error = capsys.readouterr().err
+    assert all(word in error for word in words)
