@@ -8,15 +8,16 @@ from pathlib import Path
 import pytest
 from imgui_bundle import imgui
 
+from playground.engine.engine import Engine
 from playground.engine.non_finite import NotFinite
 from playground.engine.sandbox import SandboxReport, TrySketch, TryTrace
-from playground.engine.trace.probe import ProbeMap
-from playground.errors import SandboxTimeout
+from playground.engine.trace.probe import Probe, ProbeMap, map_of
+from playground.errors import SandboxTimeout, ShaderError
 from playground.studio.inspect.inspector import texel_of_map
 from playground.studio.keys import close_one, open_layers
 from playground.studio.trace.panel import TracePanel, spark_points, state_of, title_of, word_at
 from playground.studio.trace.rows import Row, TraceView
-from playground.studio.trace.tracing import Beside, Spot, Tracing
+from playground.studio.trace.tracing import Beside, Spot, Tracing, complaint
 
 from ..sketch_texts import map_of_height
 from .hand_traces import FILE, march_trace
@@ -291,6 +292,21 @@ def test_what_is_no_probe_says_why(begin: Begin, line: int, expression: str, nam
     tracing.line, tracing.expression = line, expression
     tracing.show_probe()
     assert named in tracing.probe_message and not isinstance(tracing.session.view.map, ProbeMap)
+
+
+@pytest.mark.parametrize(
+    ("expression", "named"), [("mat2(sum)", "no number"), ("summ", "summ"), ("sum.xy", "xy")]
+)
+def test_a_probe_says_why_it_does_not_compile(
+    begin: Begin, any_engine: Engine, expression: str, named: str
+) -> None:
+    tracing = begin()
+    probe = Probe("height", str(Path(tracing.session.path).parent / "terrain.glsl"), ADD, expression)
+    assert tracing.session.sketch is not None
+    with pytest.raises(ShaderError) as raised:
+        any_engine.render(map_of(tracing.session.sketch, probe).of(tracing.session.sketch), size=(16, 9))
+    text = complaint(raised.value, probe)
+    assert named in text and "k_see" not in text
 
 
 def test_a_probe_that_does_not_compile_leaves_the_picture(begin: Begin) -> None:

@@ -464,7 +464,7 @@ class Tracing:
     def _take_probe(self, probe_map: ProbeMap, report: SandboxReport) -> None:
         refused = refusal(report)
         if refused is not None:
-            self.probe_message, self._find = str(refused), None
+            self.probe_message, self._find = complaint(refused, probe_map.probe), None
             return
         self.session.view.show(probe_map)
         self.session.fit_map()
@@ -486,6 +486,14 @@ class Tracing:
         self._seek_run = runs
         more = f"; {count:,} texels in all" if count > 1 else "; in no other"
         self.probe_message = f"first at texel {texel[0]}, {texel[1]}, in run {runs}{more}"
+
+
+def complaint(error: PlaygroundError, probe: Probe) -> str:
+    """Return why a probe does not compile: the driver's first message, without what it follows from."""
+    first = error.diagnostics[0]
+    if "k_see" in first.message:
+        return f"'{probe.expression}' is no number, vector or condition; probe a part of it: [0], or a member"
+    return first.message if first.line == probe.line else str(first)
 
 
 def run_events(trace: Trace, path: str, line: int) -> list[Event]:
