@@ -6,13 +6,14 @@ import json
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from .saves import save_in_place
-from .screen import HILLS, ON_LINUX, Program, Screen
+from .screen import HILLS, LIMIT, ON_LINUX, Program, Screen
 
 pytestmark = [*ON_LINUX, pytest.mark.slow]
 SCREEN = 1280, 720
@@ -80,9 +81,18 @@ class Traced(Program):
 
     def click(self, label: str) -> None:
         """Click on what has a label, once it stands still."""
-        time.sleep(0.5)
-        at = json.loads((self.folder.parent / "places.json").read_text(encoding="utf-8"))[label]
-        self.screen.do("mousemove", *at, "click", 1)
+        places = self.folder.parent / "places.json"
+        before: object = None
+        end = time.monotonic() + LIMIT
+        while time.monotonic() < end:
+            with suppress(json.JSONDecodeError):  # it is being written
+                at = json.loads(places.read_text(encoding="utf-8")).get(label)
+                if at is not None and at == before:
+                    self.screen.do("mousemove", *at, "click", 1)
+                    return
+                before = at
+            time.sleep(0.7)
+        pytest.fail(f"there is no {label}")
 
 
 @pytest.fixture
