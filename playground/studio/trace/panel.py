@@ -45,6 +45,7 @@ if TYPE_CHECKING:
 _CODE = 0.52  # fraction of the width that code takes first
 _SLIDER, _SPARK = 124.0, 96.0  # [units of scale 1] widths
 _SHOW, _BACK, _FIND = "Show as a map", "Back to the picture", "First texel where it is true"
+_REST = 76.0  # [units of scale 1] that "… 3 more" takes
 _CLICK = 4.0  # that the mouse may move during a click
 _GUTTER = 5  # letters left of the code: the line's number
 _WORDS = frozenset(
@@ -194,7 +195,7 @@ class TracePanel:
             imgui.end_child()
             return
         with look.font(look.code):
-            ground = {imgui.Col_.child_bg: theme.colour((0.07, 0.075, 0.08))}
+            ground = {imgui.Col_.child_bg: theme.colour(theme.palette.surround)}
             gaps = {imgui.StyleVar_.item_spacing: ImVec2(style.item_spacing.x, 2 * look.scale)}
             with styled(ground, gaps):
                 imgui.begin_child("code", size)
@@ -344,7 +345,8 @@ class TracePanel:
                     imgui.same_line()
                 drawn = True
                 room = grid.corner.x + grid.wide - imgui.get_cursor_screen_pos().x
-                if not _item(item, room, look):
+                rest = _REST * look.scale if at < len(row.items) - 1 else 0.0
+                if not _item(item, room - rest, look):
                     _rest(row.items[at:], look)
                     return
 
@@ -660,7 +662,7 @@ def draw_mark(tracing: Tracing, look: Theme, area: Area) -> None:
         return
     x, y = area[0] + mark[0] * area[2], area[1] + (1 - mark[1]) * area[3]
     draw, near, far = imgui.get_background_draw_list(), 3 * look.scale, 10 * look.scale
-    for ink, thick in ((theme.packed((0.0, 0.0, 0.0), 0.8), 4.0), (theme.packed(theme.palette.warm), 2.0)):
+    for ink, thick in ((theme.packed((0.0, 0.0, 0.0), 0.8), 4.0), (theme.packed(theme.DARK.warm), 2.0)):
         for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
             start, end = ImVec2(x + near * dx, y + near * dy), ImVec2(x + far * dx, y + far * dy)
             draw.add_line(start, end, ink, thick * look.scale)
