@@ -117,3 +117,21 @@ def test_a_slider_chooses_an_iteration(trace: Trace, tmp_path: Path) -> None:
         browser.run(MOVE, "7", "0")
         assert browser.run(ROW).split() == ["sum", "=", *sums]
         assert not browser.log()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(bool(MISSING), reason=MISSING)
+def test_of_many_iterations_few_are_shown_and_each_may_be(engine: Engine, tmp_path: Path) -> None:
+    (tmp_path / "sums.glsl").write_text(SUMS.replace("i < 3", "i < 30").replace("k <= i", "k < 2"))
+    (tmp_path / "s.toml").write_text("format = 1\nsize = 9\n" + passes(sums="./sums") + map_of("sums"))
+    trace = engine.trace(load(tmp_path / "s.toml"), "sums", texel=(2, 3))
+    sums = [text_of(event.value, short=True) for event in trace.events if event.name == "sum"][1:]
+    page = f"<!doctype html><meta charset=utf-8>{trace._repr_html_()}"
+    (tmp_path / "page.html").write_text(page, "utf-8")
+    with Browser(tmp_path / "profile") as browser:
+        browser.open((tmp_path / "page.html").as_uri())
+        assert browser.run(ROW).split() == ["sum", "=", *sums[:6], "…", "54", "more"]
+        browser.run(MOVE, "6", "26")
+        assert browser.run(ROW).split() == ["sum", "=", *sums[50:52]]
+        browser.run(MOVE, "6", "0")
+        assert browser.run(ROW).split() == ["sum", "=", *sums[:6], "…", "54", "more"]

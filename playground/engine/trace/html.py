@@ -1,13 +1,14 @@
 """A trace as HTML: values beside the code, a call at a time, with a slider on each loop.
 
 It is what a notebook shows of a trace: one element that asks nothing of a network. Without its script, as in
-a notebook that is not trusted or on paper, lines have the values of all iterations, and loops a table each.
+a notebook that is not trusted or on paper, lines have the first values of each name, and loops a table each.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from playground.engine.trace.listing import annotated, event_text, heading, short_path, text_of
 from playground.engine.trace.model import Call, Event, Loop, Trace
@@ -15,8 +16,12 @@ from playground.markup import Markup, joined, tag
 
 MAX_CALLS = 40
 """Calls that are written; of more the first."""
-MAX_VALUES = 64
-"""Values of a name in a line that are written, and rows of a loop's table."""
+MAX_SHOWN = 6
+"""Values of a name in a line that are shown at once; a slider shows each."""
+MAX_VALUES = 12_000
+"""Values that are written, besides those that are shown at first."""
+MAX_ROWS = 64
+"""Rows of a loop's table."""
 
 _STYLE = """
 .terrain-trace { max-width: 100%; overflow-x: auto; font-size: 13px; }
@@ -40,12 +45,13 @@ for (const trace of document.querySelectorAll(".terrain-trace:not([data-ready])"
     const show = () => {
       const at = new Map(sliders.map((slider) => [slider.dataset.loop, Number(slider.value)]));
       for (const value of call.querySelectorAll("[data-at]")) {
-        value.hidden = value.dataset.at.split(" ").some((pair) => {
-          const [loop, iteration] = pair.split("=");
-          const wanted = at.get(loop) ?? 0;
-          return wanted > 0 && Number(iteration) !== wanted - 1;
-        });
+        const pairs = value.dataset.at.split(" ").map((pair) => pair.split("="));
+        const chosen = pairs.filter(([loop]) => at.get(loop) > 0);
+        const isOther = chosen.some(([loop, iteration]) => Number(iteration) !== at.get(loop) - 1);
+        value.hidden = isOther || (!chosen.length && "rest" in value.dataset);
       }
+      const isAll = [...at.values()].every((wanted) => wanted === 0);
+      for (const more of call.querySelectorAll(".more")) more.hidden = !isAll;
       for (const slider of sliders) {
         const wanted = Number(slider.value);
         slider.nextElementSibling.textContent = wanted ? `iteration ${wanted - 1}` : "all iterations";
@@ -62,12 +68,13 @@ for (const trace of document.querySelectorAll(".terrain-trace:not([data-ready])"
 
 def trace_html(trace: Trace) -> str:
     """Return a trace as an element: what it is of, then its calls, the first open."""
+    rest = _Rest(MAX_VALUES)
     counts, seen = Counter(call.function for call in trace.calls), Counter[str]()
     calls = []
     for call in trace.calls[:MAX_CALLS]:
         seen[call.function] += 1
         several = f" ({seen[call.function]} of {counts[call.function]})" if counts[call.function] > 1 else ""
-        inside = _lines(trace, call), *_tables(trace, call)
+        inside = _lines(trace, call, rest), *_tables(trace, call)
         summary = tag("summary", f"{call.function}{several}, {short_path(call.path)}")
         calls.append(tag("details", summary, *inside, class_="call", open=call.index == _first(trace)))
     left = len(trace.calls) - len(calls)
@@ -92,13 +99,20 @@ def _first(trace: Trace) -> int:
     return next((call.index for call in trace.calls if call.path == own), 0)
 
 
-def _lines(trace: Trace, call: Call) -> Markup:
+@dataclass
+class _Rest:
+    """How many values may still be written besides those that are shown at first."""
+
+    left: int
+
+
+def _lines(trace: Trace, call: Call, rest: _Rest) -> Markup:
     """Return the lines of a call's function, with their values and the sliders of its loops."""
     heads = {loop.line: loop for loop in sorted(trace.loops(call), key=lambda loop: len(loop.rows))}
     rows = []
     for line in annotated(trace, call.path, call):
         loop = heads.get(line.number)
-        values = joined(_slider(loop) if loop else None, *_values(line.events))
+        values = joined(_slider(loop) if loop else None, *_values(line.events, rest))
         mark = "" if line.is_finite else "⚠ "
         cells = tag("td", f"{mark}{line.number}", class_="number"), tag("td", tag("pre", line.code))
         rows.append(tag("tr", *cells, tag("td", values)))
@@ -112,7 +126,7 @@ def _slider(loop: Loop) -> Markup:
     return tag("label", slider, tag("output", "all iterations"), hidden=True)
 
 
-def _values(events: Sequence[Event]) -> Iterator[Markup]:
+def _values(events: Sequence[Event], rest: _Rest) -> Iterator[Markup]:
     """Yield what events of one line gave, by name: each value with the iterations that it is of."""
     by_name: dict[str, list[Event]] = {}
     for event in events:
@@ -121,14 +135,18 @@ def _values(events: Sequence[Event]) -> Iterator[Markup]:
             by_name.setdefault(name, []).append(event)
     for name, some in by_name.items():
         yield tag("span", f"{name} ", class_="name")
-        for event in some[:MAX_VALUES]:
+        written = MAX_SHOWN + min(max(len(some) - MAX_SHOWN, 0), rest.left)
+        rest.left -= written - MAX_SHOWN
+        for number, event in enumerate(some[:written]):
             pairs = zip(event.loops, event.iterations, strict=True)
             at = " ".join(f"{line}={iteration}" for line, iteration in pairs)
             text = text_of(event.value, short=len(some) > 1)
-            yield tag("span", text, class_="value" if event.is_finite else "value bad", data_at=at or None)
+            kind = "value" if event.is_finite else "value bad"
+            is_rest = number >= MAX_SHOWN
+            yield tag("span", text, class_=kind, data_at=at or None, data_rest=is_rest, hidden=is_rest)
             yield Markup(" ")
-        if len(some) > MAX_VALUES:
-            yield tag("span", f"… {len(some) - MAX_VALUES} more", class_="value")
+        if len(some) > MAX_SHOWN:
+            yield tag("span", f"… {len(some) - MAX_SHOWN} more", class_="value more")
 
 
 def _tables(trace: Trace, call: Call) -> Iterator[Markup]:
@@ -140,9 +158,9 @@ def _tables(trace: Trace, call: Call) -> Iterator[Markup]:
         head = tag("tr", *(tag("th", name) for name in names))
         rows = [
             tag("tr", *(tag("td", text_of(row.get(name), short=True)) for name in names))
-            for row in loop.rows[:MAX_VALUES]
+            for row in loop.rows[:MAX_ROWS]
         ]
-        more = tag("p", f"… {len(loop.rows) - MAX_VALUES} more") if len(loop.rows) > MAX_VALUES else None
+        more = tag("p", f"… {len(loop.rows) - MAX_ROWS} more") if len(loop.rows) > MAX_ROWS else None
         over = f"over {loop.variable}, " if loop.variable else ""
         inside = f", iteration {', '.join(map(str, loop.iterations))} around it" if loop.iterations else ""
         summary = tag("summary", f"loop {over}line {loop.line}{inside}: {len(loop.rows)} iterations")

@@ -1,4 +1,4 @@
-/* sources 35da4802aa28d1bf */
+/* sources 3b01f43910214a9a */
 /* Contains CodeMirror.
 MIT License
 
