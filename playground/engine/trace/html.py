@@ -30,7 +30,7 @@ _STYLE = """
 .terrain-trace pre { margin: 0; font: inherit; }
 .terrain-trace .number { color: #888; text-align: right; }
 .terrain-trace .value { padding-right: 6px; }
-.terrain-trace .value + .value { border-left: 1px solid #888; padding-left: 6px; }
+.terrain-trace .value:not([hidden]) ~ .value:not([hidden]) { border-left: 1px solid #888; padding-left: 6px; }
 .terrain-trace .name { color: #2f7fd6; padding-left: 10px; }
 .terrain-trace .bad { color: #d32f2f; font-weight: bold; }
 .terrain-trace input { vertical-align: middle; }
@@ -134,7 +134,7 @@ def _values(events: Sequence[Event], rest: _Rest) -> Iterator[Markup]:
             name = {"return": "→", "condition": "?"}.get(event.kind, f"{event.name} =")
             by_name.setdefault(name, []).append(event)
     for name, some in by_name.items():
-        yield tag("span", f"{name} ", class_="name")
+        parts: list[Markup] = [tag("span", f"{name} ", class_="name")]
         written = MAX_SHOWN + min(max(len(some) - MAX_SHOWN, 0), rest.left)
         rest.left -= written - MAX_SHOWN
         for number, event in enumerate(some[:written]):
@@ -143,10 +143,11 @@ def _values(events: Sequence[Event], rest: _Rest) -> Iterator[Markup]:
             text = text_of(event.value, short=len(some) > 1)
             kind = "value" if event.is_finite else "value bad"
             is_rest = number >= MAX_SHOWN
-            yield tag("span", text, class_=kind, data_at=at or None, data_rest=is_rest, hidden=is_rest)
-            yield Markup(" ")
+            value = tag("span", text, class_=kind, data_at=at or None, data_rest=is_rest, hidden=is_rest)
+            parts += [value, Markup(" ")]
         if len(some) > MAX_SHOWN:
-            yield tag("span", f"… {len(some) - MAX_SHOWN} more", class_="value more")
+            parts.append(tag("span", f"… {len(some) - MAX_SHOWN} more", class_="value more"))
+        yield tag("span", *parts)
 
 
 def _tables(trace: Trace, call: Call) -> Iterator[Markup]:
