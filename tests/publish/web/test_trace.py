@@ -231,6 +231,18 @@ def test_shaders_of_other_tools_are_traced(pages: Pages, drawn: Engine, tmp_path
         assert color[0] == pytest.approx(3 * (np.hypot(x, y) - 0.5) + 1 / 64, rel=1e-5)
 
 
+def test_a_text_that_lost_the_context_is_not_tried_again(pages: Pages, drawn: Engine, tmp_path: Path) -> None:
+    """A compiler that crashes leaves no message, and takes the context with it."""
+    open_page(pages, sketch_of(tmp_path, CHAIN), drawn)
+    pages.run("const p = engine.parts.programs; window.finish = p.finish; p.finish = () => false")
+    for _ in "ab":
+        with pytest.raises(PageError) as lost:
+            traced(pages, "seed", (1, 1))
+        assert lost.value.message["code"] == "lost"
+        pages.run("engine.parts.programs.finish = window.finish")
+    assert traced(pages, "spread", (1, 1))["isExact"]
+
+
 def test_edited_texts_and_draws_have_no_trace(pages: Pages, drawn: Engine, tmp_path: Path) -> None:
     sketch = sketch_of(tmp_path, CHAIN)
     open_page(pages, sketch, drawn)

@@ -1,4 +1,4 @@
-/* sources 3b01f43910214a9a */
+/* sources 1df29c3ec2c65d36 */
 /* Contains CodeMirror.
 MIT License
 

@@ -31,8 +31,8 @@ export function createTrace(engine, figure, open) {
       view.show(traced(engine, player, place.path, place.texel, iteration));
     } catch (error) {
       const { code = "", message = String(error) } = /** @type {import("./context.js").Failure} */ (error);
-      const edited = code === "edited" && fill(words.traceEdited, { file: message.replace(/^\.\//, "") });
-      view.say(edited || fill(words.traceNone, { reason: message }));
+      const text = { edited: words.traceEdited, lost: words.traceLost }[code] ?? words.traceNone;
+      view.say(fill(text, { file: message.replace(/^\.\//, ""), reason: message }));
     }
   }
 

@@ -30,6 +30,9 @@ import { rebuild } from "./trace_values.js";
 
 const WIDTH = 256, ROWS = 16; // texels of the first target: most runs have fewer events
 const MAX_ROWS = 256;
+/** Texts whose compiler crashed, and the graphics context with it: they are not tried again.
+ *  @type {WeakSet<TracedText>} */
+const refused = new WeakSet();
 const HELD = { 0x1406: Float32Array, 0x1401: Uint8Array, 0x1403: Uint16Array, 0x140b: Uint16Array };
 
 /** Trace a texel of a pass as the player's picture has it; throws a `Failure` where that cannot be.
@@ -54,6 +57,7 @@ export function tracedText({ shared, texts }, kernel) {
   const { trace } = kernel;
   if (!trace) throw failure("no-trace", `${kernel.name} has no traced text in this page.`);
   if ("lacks" in trace) throw failure("no-trace", trace.lacks);
+  if (refused.has(trace)) throw failure("lost", kernel.name);
   const edited = trace.files.find((file) => texts[file] !== undefined && texts[file] !== shared.files[file]);
   if (edited) throw failure("edited", edited);
   return trace;
@@ -78,13 +82,21 @@ function drawn(engine, player, job, before, iteration, texel, real) {
   const program = programs.ask([vertex, toES(trace.text, { extensions: kernel.extensions })]);
   if (!programs.finish(program)) {
     const log = [...program.logs, program.link].join("").trim().split("\n")[0];
-    throw failure("no-trace", `This device does not take the traced text: ${log}`);
+    if (log) throw failure("no-trace", `This device does not take the traced text: ${log}`);
+    refused.add(trace);
+    throw failure("lost", kernel.name);
   }
   bind(engine, program, job, before, iteration);
   let target = recorded(engine, program, job, trace, texel, ROWS);
   const rows = Math.ceil(target.count / WIDTH);
   if (rows > ROWS) target = recorded(engine, program, job, trace, texel, Math.min(rows, MAX_ROWS));
-  context.check(`the trace of '${step.path}'`);
+  try {
+    context.check(`the trace of '${step.path}'`);
+  } catch (error) {
+    if (/** @type {import("./context.js").Failure} */ (error).code !== "context-lost") throw error;
+    refused.add(trace);
+    throw failure("lost", kernel.name);
+  }
   return {
     path: step.path, texel, kernel, run: rebuild(placesOf(trace), trace.structs, target.leaves),
     isComplete: target.leaves.length >= target.count,

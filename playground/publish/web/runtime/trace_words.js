@@ -20,6 +20,7 @@ export const TRACE_WORDS = {
     traceNotFinite: "NaN or infinity",
     traceEdited: "{file} was edited here, and an edited text has no trace: reset the file, or trace it in the "
       + "playground.",
+    traceLost: "The graphics device gave up on the traced text of {file}: it is not tried again.",
     traceNone: "No trace: {reason}",
     keyTrace: "trace a texel by a click, or no longer",
   },
@@ -41,6 +42,7 @@ export const TRACE_WORDS = {
     traceNotFinite: "NaN ou infini",
     traceEdited: "{file} a été modifié ici, et un texte modifié n’a pas de trace : rétablissez le fichier, ou "
       + "tracez-le dans le playground.",
+    traceLost: "Le processeur graphique a abandonné le texte tracé de {file} : il n’est plus essayé.",
     traceNone: "Pas de trace : {reason}",
     keyTrace: "tracer un texel par un clic, ou ne plus le faire",
   },
