@@ -45,9 +45,9 @@ HELP = help_text(
     "With --compare or --against, the first value is printed that differs between two runs, of two texels or"
     " with other parameters, and the first condition by which they take different paths. Numbers that are not"
     " finite are texts in JSON: NaN, Infinity, -Infinity.",
-    "playground trace diamond_square height.raw 3 5 --iteration 6",
-    "playground trace diamond_square height.raw 3 5 --iteration 6 --loop i",
-    "playground trace jacksboro light.visibility 700 300 --function all",
+    "playground trace diamond_square height.raw 192 320 --iteration 5",
+    "playground trace diamond_square height.raw 192 320 --iteration 5 --loop i",
+    "playground trace jacksboro light.visibility 300 200 --function all",
     "playground trace fbm height 10 20 --set height.octaves=3 --json",
     "playground trace l_dot_n product 10 20 --compare 11 20",
     "playground trace l_dot_n product 10 20 --against product.sun=90,10",
