@@ -184,7 +184,7 @@ class Tracer:
             return self._latest.plan
         self._asked = asked
         plan = self._renderer.plan(sketch, size, time, steps, path, canonical=leaf)
-        found = plan.step(plan.flat.ref(path, sketch.name).path)
+        found = plan.step(_ref(plan, path).path)
         if found is not None and isinstance(found.kernel, Draw) and sketch.picture.samples != 1:
             return self.plan(sketch.with_picture(samples=1), path, size, time, steps)
         return plan
@@ -199,7 +199,7 @@ class Tracer:
         limit: int = MAX_EVENTS,
     ) -> Trace:
         """Return what one texel's run of a step of a plan recorded; see ``Engine.trace``."""
-        ref = plan.flat.ref(path, plan.sketch.name)
+        ref = _ref(plan, path)
         step, loops = self._step(plan, ref)
         texel = _checked_texel(step, texel)
         if not isinstance(limit, Integral) or isinstance(limit, bool) or limit < 1:
@@ -215,7 +215,7 @@ class Tracer:
 
     def request(self, plan: Plan, path: str, function: str | None = None) -> TryTexts:
         """Return what the sandbox has to try before a step of a plan is traced; raises as ``trace``."""
-        ref = plan.flat.ref(path, plan.sketch.name)
+        ref = _ref(plan, path)
         step, loops = self._step(plan, ref)
         renderer = self._renderer
         with renderer.supposing(plan), renderer.borrowed():
@@ -619,6 +619,18 @@ def _with_loops(nodes: Sequence[PlanNode], path: str) -> tuple[Step, tuple[LoopS
         elif node.path == path:
             return node, ()
     return None
+
+
+def _ref(plan: Plan, path: str) -> Ref:
+    """Return the texture that ``pass[.inner…][:output]`` names, one inside of a fast variant too."""
+    name, _, output = path.partition(":")
+    step = plan.step(name) if name not in plan.flat.outputs else None
+    if step is None:
+        return plan.flat.ref(path, plan.sketch.name)
+    outputs = [each.name for each in step.kernel.outputs]
+    if output and output not in outputs:
+        raise SketchError(f"pass '{name}' has no output '{output}'{nearest(output, outputs)}")
+    return Ref(name, output or outputs[0])
 
 
 def _wired(source: Ref | Fed | None, results: Mapping[str, Result]) -> Wired:
