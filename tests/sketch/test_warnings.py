@@ -232,7 +232,7 @@ def unwritten_in(folder: Path, body: str) -> list[str]:
         "float a, b = 1.0; return b - ^a;",
         "vec3 a; return ^a.x;",
         "float a[3]; return ^a[1];",
-        "float b = 1.0, a; ^a = a + b; return a;",
+        "float b = 1.0, a; a = ^a + b; return a;",
         "float a; return max(^a, 0.0);",
         "float a; for (int i = 0; i < 3; i++) { ^a += 1.0; a += 2.0; } return a;",
         "for (int a; ^a < 3; a++) {} return 0.0;",
