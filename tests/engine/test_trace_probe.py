@@ -163,6 +163,21 @@ def test_a_map_shows_a_probe_of_a_pass_inside_a_technique(any_engine: Engine) ->
     assert len(np.unique(frame.array[..., 0])) > 1, "where the terrain is, and where it is not"
 
 
+def test_a_pass_of_a_fast_variant_is_probed_where_it_runs(any_engine: Engine) -> None:
+    sketch = load("soft_cone").with_values({"size": 65})
+    leaves = any_engine.plan(sketch, (64, 36)).walk()
+    step = next(step for step in leaves if step.path == "light.visibility.fast.visibility")
+    line = next(line for line in step.kernel.source.lines if "float kernel(" in line.code)
+    changed, probe, _ = probed(sketch, Probe(step.path, line.file, line.number, "vec2(texel)"))
+    place = Probe(step.path, line.file, line.number, "").place
+    values = any_engine.read(changed, f"{place}:{probe}")
+    np.testing.assert_array_equal(
+        values[..., 0], np.broadcast_to(np.arange(values.shape[1]), values.shape[:2])
+    )
+    before, after = (any_engine.read(s, "light.visibility") for s in (sketch, changed))
+    np.testing.assert_allclose(after, before, atol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("line", "expression", "named"),
     [

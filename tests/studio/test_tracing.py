@@ -262,6 +262,10 @@ def test_the_first_texel_where_a_condition_holds_is_traced(begin: Begin) -> None
     assert tracing.spot == Spot("height", (4, 0)) and tracing.is_pinned
     (row,) = [row for row in view_rows(tracing) if row.number == ADD]
     assert [item.event.iterations for item in row.items] == [(3,)], "in the iteration where it first held"
+    mark = tracing.mark(SIZE)
+    assert mark is not None
+    pixel = int(mark[0] * SIZE[0]), int(mark[1] * SIZE[1])
+    assert texel_of_map(pixel, SIZE, (9, 6)) == (4, 0), "a cross stands there"
     assert "run 4" in tracing.probe_message and "20 texels" in tracing.probe_message  # 5 columns, 4 rows
     tracing.expression = "sum > 100.0"
     tracing.show_probe(find=True)

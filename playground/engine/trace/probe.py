@@ -44,6 +44,7 @@ from playground.shader.syntax.nodes import (
 from playground.shader.syntax.parser import Tree, parse
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Graph, Sketch, Technique
+from playground.sketch.variants import INSIDE
 from playground.sketch.wiring import initial_names
 
 _ZEROS = {"float": "0.0", "int": "0", "uint": "0u", "bool": "false"}
@@ -55,10 +56,15 @@ _MAX_LENGTH = 400  # letters of an expression
 class Probe:
     """An expression at a line of a pass."""
 
-    path: str  # of the pass: "height.detail"
+    path: str  # of the pass: "height.detail"; in a fast variant "light.fast.sweep"
     file: str  # absolute path of the author's file
     line: int  # from 1
     expression: str
+
+    @property
+    def place(self) -> str:
+        """The path of the pass in the probed sketch, in which a fast variant takes its technique's place."""
+        return ".".join(part for part in self.path.split(".") if part != INSIDE)
 
     def __str__(self) -> str:
         return f"{self.expression} behind line {self.line}"
@@ -75,7 +81,7 @@ class ProbeMap(Map):
     @property
     def hits_ref(self) -> str:
         """The texture of how often the line ran, and in which run the probe was first not zero."""
-        return f"{self.probe.path}:{self.hits}"
+        return f"{self.probe.place}:{self.hits}"
 
     @property
     def private_refs(self) -> tuple[str, ...]:
@@ -104,7 +110,7 @@ class ProbeMap(Map):
 def map_of(sketch: Sketch, probe: Probe) -> ProbeMap:
     """Return the map of a probe; raise as ``probed``."""
     _, output, hits = probed(sketch, probe)
-    return ProbeMap(f"{probe.path}:{output}", probe=probe, hits=hits)
+    return ProbeMap(f"{probe.place}:{output}", probe=probe, hits=hits)
 
 
 @GRAPHS.cached(identities=1)
@@ -136,7 +142,10 @@ def _changed(
             raise SketchError(f"'{path}' is several passes: {', '.join(inner)}; choose one")
         return change(technique)
     name, *rest = parts
-    graphs = [technique, *(v.technique for v in technique.variants)]
+    graphs: list[Technique] = [technique]
+    if name == INSIDE:
+        name, *rest = rest
+        graphs = [variant.technique for variant in technique.variants]
     for graph in graphs:
         spec = graph.written.find(name) if isinstance(graph, Graph) else None
         if not isinstance(graph, Graph) or spec is None:

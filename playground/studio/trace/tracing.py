@@ -22,6 +22,7 @@ from playground.engine.trace.model import Event, Trace
 from playground.engine.trace.probe import Probe, ProbeMap, map_of
 from playground.errors import PlaygroundError
 from playground.sketch.model import ComputeVariant, CpuSource, Draw, PlainFragment, TexelKernel
+from playground.sketch.variants import canonical_path
 from playground.studio.inspect.inspector import Inspector, Pixel
 from playground.studio.reload.stages import refusal
 from playground.studio.session import Session
@@ -189,8 +190,11 @@ class Tracing:
         if self.pin is not None or self._fixed is None:
             return self.pin
         shown = self.session.view.map
-        result = self.session.result_of(shown.ref) if shown is not None else None
-        if shown is None or result is None or shown.ref.partition(":")[0] != self._fixed.path:
+        if shown is None:
+            return None
+        path = shown.probe.path if isinstance(shown, ProbeMap) else shown.ref.partition(":")[0]
+        result = self.session.result_of(shown.ref)
+        if result is None or canonical_path(path) != self._fixed.path:
             return None
         texels, worst = result[0].size, max(n / side for n, side in zip(result[0].size, size, strict=True))
         x, y = ((t + 0.5 - n / 2) / worst for t, n in zip(self._fixed.texel, texels, strict=True))
@@ -333,14 +337,14 @@ class Tracing:
 
     def _plan_of(self, spot: Spot) -> Plan:
         """Return the plan whose pass is traced: the picture's, but for plain forms and a probe's."""
-        session, tracer = self.session, self.session.engine.tracer
-        last = session.engine.record.plan
+        session, engine = self.session, self.session.engine
+        last = engine.record.plan
         assert last is not None and session.sketch is not None
-        probes = isinstance(session.view.map, ProbeMap)
-        if not probes and spot.path not in self.plain:
-            return last
-        sketch = session.sketch if probes else last.sketch
-        return tracer.plan(sketch, spot.path, last.frame_size, last.time, last.steps)
+        # A probe's map has other outputs; what it is of runs as in the sketch's own view.
+        sketch = session.sketch if isinstance(session.view.map, ProbeMap) else last.sketch
+        if spot.path in self.plain:
+            return engine.tracer.plan(sketch, spot.path, last.frame_size, last.time, last.steps)
+        return last if sketch is last.sketch else engine.plan(sketch, last.frame_size, last.time, last.steps)
 
     @property
     def _can_trace(self) -> bool:
@@ -443,11 +447,13 @@ class Tracing:
         sketch, spot = self.session.sketch, self.spot
         if sketch is None or spot is None:
             return
-        path = self._own_path(spot.path)
+        step = self._step(spot)  # of a fast variant the pass that runs
+        path = self._own_path(spot.path if step is None or spot.path in self.plain else step.path)
+        probe = Probe(path, self.file, self.line, self.expression.strip())
         try:
-            probe_map = map_of(sketch, Probe(path, self.file, self.line, self.expression.strip()))
+            probe_map = map_of(sketch, probe)
         except PlaygroundError as error:
-            self.probe_message = str(error)
+            self.probe_message = complaint(error, probe)
             return
         self.probe_message = ""
         self._find = probe_map if find else None
@@ -481,8 +487,7 @@ class Tracing:
             self.probe_message = f"{probe_map.probe} is 0 or false in every texel"
             return
         texel, count, runs = found
-        path = probe_map.probe.path
-        self.pin, self._fixed = None, Spot(path, texel)
+        self.pin, self._fixed = None, Spot(canonical_path(probe_map.probe.path), texel)
         self._seek_run = runs
         more = f"; {count:,} texels in all" if count > 1 else "; in no other"
         self.probe_message = f"first at texel {texel[0]}, {texel[1]}, in run {runs}{more}"
