@@ -242,6 +242,8 @@ def test_a_probe_is_shown_as_a_map_with_its_own_range(begin: Begin) -> None:
     tracing.line, tracing.expression = ADD, "sum"
     tracing.show_probe()
     frame(tracing, 3)
+    assert tracing.spot == Spot("height", (5, 1)) and tracing.is_pinned, "the texel stays"
+    tracing.follow()
     shown = tracing.session.view.map
     assert isinstance(shown, ProbeMap) and not tracing.session.error
     assert shown.value("lowest") == pytest.approx(-2 * HARMONIC)  # x = -2 in the first column

@@ -456,6 +456,7 @@ class Tracing:
             self.probe_message = complaint(error, probe)
             return
         self.probe_message = ""
+        self.pin, self._fixed = None, spot  # a map has another texel in that place
         self._find = probe_map if find else None
         if self.sandbox is None:
             self._take_probe(probe_map, SandboxReport(True))
