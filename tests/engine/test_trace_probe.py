@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,10 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
+from playground.engine.planner import smallest_terrain
 from playground.engine.trace.probe import Probe, map_of, probed
 from playground.errors import PlaygroundError
+from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
@@ -176,6 +179,25 @@ def test_a_pass_of_a_fast_variant_is_probed_where_it_runs(any_engine: Engine) ->
     )
     before, after = (any_engine.read(s, "light.visibility") for s in (sketch, changed))
     np.testing.assert_allclose(after, before, atol=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", shipped_sketches())
+def test_each_shipped_pass_takes_a_probe_and_stays_as_it_was(any_engine: Engine, name: str) -> None:
+    sketch = load(name)
+    sketch = sketch.with_values({"size": smallest_terrain(sketch)}).with_picture(samples=1).plainly()
+    for leaf in any_engine.plan(sketch, (48, 32)).flat.leaves:
+        entry = {"kernel": "kernel", "plain_fragment": "main|mainImage"}.get(leaf.kernel.kind, "")
+        heads = [line for line in leaf.kernel.source.lines if re.search(rf"\b({entry})\s*\(", line.code)]
+        line = heads[0] if entry and heads else None
+        if line is None or getattr(leaf.kernel, "visits", ""):  # whose step gives few texels
+            continue
+        ref = f"{leaf.path}:{leaf.kernel.outputs[0].name}"
+        before = any_engine.read(sketch, ref, size=(48, 32))
+        changed, probe, _ = probed(sketch, Probe(leaf.path, line.file, line.number, "1.0"))
+        np.testing.assert_array_equal(any_engine.read(changed, ref, size=(48, 32)), before, leaf.path)
+        values = any_engine.read(changed, f"{leaf.path}:{probe}", size=(48, 32))
+        assert (values[..., 0] == 1.0).all(), leaf.path
 
 
 @pytest.mark.parametrize(
