@@ -191,6 +191,8 @@ class _Rewriter:
         if begins and ends:
             return begin.start, end.end
         start, after = begin.spelled, end.spelled + len(end.text)
+        if last - first > after - start:  # more tokens than letters: macros within macros
+            return None
         spelled = [token.text for token in tokenize(self._text[start:after])[0]] if start < after else []
         return (start, after) if spelled == [token.text for token in tokens[first:last]] else None
 
