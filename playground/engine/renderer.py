@@ -34,7 +34,7 @@ from playground.engine.gl_calls import Timer
 from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
 from playground.engine.plain_forms import PlainForms, warn
-from playground.engine.plan import Plan, PlanRequest, Step, Window, needed
+from playground.engine.plan import LoopStep, Plan, PlanRequest, Step, Window, needed, walk
 from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.planner import planned
 from playground.engine.results import Pool
@@ -50,7 +50,7 @@ from playground.shader.reserved_names import MOMENT
 from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.sketch.flat import Ref
 from playground.sketch.load import opened
-from playground.sketch.model import MAX_PICTURE_SIDE, MAX_SIDE, Kernel, Sketch
+from playground.sketch.model import MAX_PICTURE_SIDE, MAX_SIDE, Kernel, Sketch, TexelKernel
 from playground.sketch.variants import compiled_text
 
 if TYPE_CHECKING:
@@ -276,13 +276,30 @@ class Renderer:
         before, runs, options = self.record, self.runs.copy(), self.options
         self.options = RunOptions()
         try:
-            self._run(plan, refs)
+            self._run(plan, refs, apart=True)
             record = self.record
-            if before.plan is not None:
+            if not self._is_whole(before):
+                assert before.plan is not None, "a frame without a plan has no results"
                 self.recall(before.plan)
+                before.results = self.record.results
             return record
         finally:
             self.record, self.runs, self.options = before, runs, options
+
+    def _is_whole(self, record: FrameRecord) -> bool:
+        """Return whether a picture's results are still there: another plan may have gone on from them."""
+        plan, results = record.plan, record.results
+        if plan is None or plan.picture.path not in results:
+            return True
+        for node in plan.nodes:
+            if isinstance(node, LoopStep):
+                ran = any(step.path in results for step in walk(node.body))
+                if ran and not self.cache.holds(record.keys.loops[node.path], node.repeat):
+                    return False
+            elif node.path in results and isinstance(node.kernel, TexelKernel):
+                if record.keys.result(node.path) not in self.cache:
+                    return False
+        return True
 
     def picture_hash(self, plan: Plan) -> str:
         """Return a hash of what a plan's picture is drawn from, the same on every machine.
@@ -330,12 +347,13 @@ class Renderer:
         self._run(plan, (ref,))
         return self.record.results[ref.path].textures[ref.output]
 
-    def _run(self, plan: Plan, refs: Sequence[Ref]) -> None:
-        """Run what some textures need, for one frame."""
+    def _run(self, plan: Plan, refs: Sequence[Ref], *, apart: bool = False) -> None:
+        """Run what some textures need, for one frame; ``apart``: what the last one uses stays in use."""
         runner, options = self.runner, self.options
         self.plain_forms.report(plan.sketch, plan.lacking)
         self.record = record = FrameRecord(plan, before=self.record.keys)
-        self.cache.begin()
+        if not apart:
+            self.cache.begin()
         runner.set_frame(plan)
         runner.programs.frame += 1
         record.keys = self._keys.keys_of(plan, runner.driver_for, runner.given_for_key)

@@ -314,6 +314,25 @@ def test_a_trace_changes_nothing_that_is_drawn_afterwards(any_engine, folder):
         assert fresh.render(sketch, size=(64, 36)).array.tobytes() == before.array.tobytes()
 
 
+def test_a_trace_of_more_iterations_leaves_a_stopped_picture(any_engine, folder):
+    folder.kernels(h=COUNT.replace("a:r32f", "h:r32f"))
+    sketch = folder.sketch(passes(h="./h") + map_of("h"))
+    stopped = any_engine.render(sketch, size=(64, 36), steps={"h": 2})
+    trace = any_engine.trace(sketch, "h", texel=(5, 5), size=(64, 36))
+    assert trace.iteration == (5,) and trace.is_exact
+    assert any_engine.record.plan.steps == {"h": 2}
+    assert any_engine.trace_frame("h", texel=(5, 5)).iteration == (1,)
+    again = any_engine.render(sketch, size=(64, 36), steps={"h": 2})
+    assert again.array.tobytes() == stopped.array.tobytes()
+
+
+def test_a_picture_that_failed_is_not_drawn_again_for_a_trace(any_engine, folder, steps):
+    folder.write("broken.glsl", COUNT.replace("before * 2.0", "behind"))
+    with pytest.raises(ShaderError):
+        any_engine.render(folder.sketch(passes(h="./broken") + map_of("h")), size=(64, 36))
+    assert any_engine.trace(steps, "a", texel=(1, 1)).is_exact
+
+
 def test_the_limit_cuts_a_trace_and_says_so(any_engine, steps):
     whole = any_engine.trace(steps, "a", texel=(9, 0))
     cut = any_engine.trace(steps, "a", texel=(9, 0), limit=20)
