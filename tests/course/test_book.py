@@ -28,7 +28,7 @@ from playground.course.scenes import draw, pictures_of
 from playground.course.traces import Results, results_of
 from playground.errors import DataError
 
-VOID = {"img", "input", "br", "meta", "link", "hr", "source"}
+VOID = {"col", "img", "input", "br", "meta", "link", "hr", "source"}
 
 
 class Page(HTMLParser):

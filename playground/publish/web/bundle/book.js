@@ -1,4 +1,4 @@
-/* sources 1df29c3ec2c65d36 */
+/* sources ccf7f54288f6af77 */
 /* Contains CodeMirror.
 MIT License
 

@@ -35,7 +35,7 @@ import { texelsOf } from "./textures.js";
  *  @property {(step: Step) => number} samples
  *  @property {(text: import("./kernel_texts.js").KernelText, width: number, height: number) => number} rows
  *  @property {() => void} cancel   give up this run: another needs what it is at
- *  @property {(job: Job, made: Result) => void} [computed]   a step of a loop has run, and its inputs are there */
+ *  @property {(job: Job, made: Result) => void} [computed]   of a loop's step, its inputs are there */
 
 /** A generator of pieces of work. @template T
  *  @typedef {Generator<any, T, boolean | undefined>} Working */
@@ -391,7 +391,9 @@ export const createExecution = (plan, nodes, around) => {
 
     /** Return what a step outside of loops is run with. @param {Step} step @returns {Job} */
     job: (step) =>
-      jobOf(step, new Map(step.inputs.map(([name, source]) => [name, wiredTo(source, new Map())])), null, null),
+      jobOf(
+        step, new Map(step.inputs.map(([name, source]) => [name, wiredTo(source, new Map())])), null, null,
+      ),
 
     /** Return what a pass has computed. @param {string} path @returns {Result} */
     result: (path) => /** @type {Result} */ (results.get(path)),

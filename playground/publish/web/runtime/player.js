@@ -443,7 +443,8 @@ export const createPlayer = (engine, sketch, onClose) => {
         stepsOf([node]).some((inside) => inside.path === path));
       if (!step) throw failure("sketch", `There is no pass '${path}'.`);
       const repeats = step.kernel.kind === "kernel" && step.kernel.repeat !== 1;
-      const total = loop ? loop.repeat : repeats ? step.repeat : 1, ref = { path, output: step.kernel.outputs[0].name };
+      const total = loop ? loop.repeat : repeats ? step.repeat : 1;
+      const ref = { path, output: step.kernel.outputs[0].name };
       if (!total) throw failure("sketch", `Pass '${path}' has not run yet.`);
       const iteration = Math.min(Math.max(wanted ?? total - 1, 0), total - 1);
       /** @param {number} count iterations after which the repeat stops */

@@ -79,8 +79,8 @@
 /** A fragment shader that records what it does (engine/trace), and the table of the places that record.
  *  @typedef {object} TracedText
  *  @property {string} text              in desktop GLSL
- *  @property {boolean} quads            four fragments run the texels of a quad, so that derivatives are exact
- *  @property {[string, string, string, string, number, number, number, number[]][]} places   of each its kind,
+ *  @property {boolean} quads            four fragments run a quad's texels, so that derivatives are exact
+ *  @property {[string, string, string, string, number, number, number, number[]][]} places   of each: kind,
  *      its name, its function, its type, the number of its file, its line, the last one, the loops around it
  *  @property {import("./trace_values.js").Structs} structs
  *  @property {string[]} files           in `Shared.files`, that it is made of */

@@ -8,8 +8,8 @@ export const TRACE_WORDS = {
     tracePoint: "Click on the picture, or on a map, to see the values of every line for that texel.",
     traceTitle: "{path}, texel {x}, {y}",
     traceExact: "The traced run gives this very texel, bit for bit.",
-    traceInexact: "The traced run gives another texel in its last bits: this device computes some sums otherwise "
-      + "where their parts are recorded.",
+    traceInexact: "The traced run gives another texel in its last bits: this device computes some sums "
+      + "otherwise where their parts are recorded.",
     traceCut: "It has more events than are shown.",
     traceCall: "Call",
     traceNth: "{name}, {number} of {count}",
@@ -18,8 +18,8 @@ export const TRACE_WORDS = {
     traceIteration: "Iteration",
     traceBad: "First NaN or infinity",
     traceNotFinite: "NaN or infinity",
-    traceEdited: "{file} was edited here, and an edited text has no trace: reset the file, or trace it in the "
-      + "playground.",
+    traceEdited: "{file} was edited here, and an edited text has no trace: reset the file, or trace it in "
+      + "the playground.",
     traceLost: "The graphics device gave up on the traced text of {file}: it is not tried again.",
     traceNone: "No trace: {reason}",
     keyTrace: "trace a texel by a click, or no longer",
@@ -40,8 +40,8 @@ export const TRACE_WORDS = {
     traceIteration: "Itération",
     traceBad: "Premier NaN ou infini",
     traceNotFinite: "NaN ou infini",
-    traceEdited: "{file} a été modifié ici, et un texte modifié n’a pas de trace : rétablissez le fichier, ou "
-      + "tracez-le dans le playground.",
+    traceEdited: "{file} a été modifié ici, et un texte modifié n’a pas de trace : rétablissez le fichier, "
+      + "ou tracez-le dans le playground.",
     traceLost: "Le processeur graphique a abandonné le texte tracé de {file} : il n’est plus essayé.",
     traceNone: "Pas de trace : {reason}",
     keyTrace: "tracer un texel par un clic, ou ne plus le faire",
