@@ -62,24 +62,10 @@ class TryLibrary:
 
 
 @dataclass(frozen=True)
-class TryTexts:
-    """Compile a fragment shader as the driver gets it, such as one that traces, and draw a few fragments.
-
-    All that it reads is zero. Driver and sandbox share the cache of shaders on disk: it compiles sooner then.
-    """
-
-    vertex: str
-    fragment: str
-    formats: tuple[str, ...]  # of what it is drawn to, by location: such as rgba16f, and rgba32ui
-    path: str = ""  # of the pass
-    file: str = ""  # absolute path of its text
-
-
-@dataclass(frozen=True)
 class TryTrace:
     """Trace one texel of a pass in a small frame of a sketch.
 
-    The driver's cache then has the traced text as the pass is bound, which ``TryTexts`` does not know.
+    Driver and sandbox share the cache of shaders on disk: the window's own trace compiles sooner then.
     """
 
     sketch: Sketch
@@ -89,7 +75,7 @@ class TryTrace:
     time: float = 0.0  # [s]
 
 
-Request = TrySketch | TryLibrary | TryTexts | TryTrace
+Request = TrySketch | TryLibrary | TryTrace
 
 
 @dataclass(frozen=True)

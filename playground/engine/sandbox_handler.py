@@ -20,11 +20,9 @@ from playground.engine.sandbox import (
     SandboxReport,
     TryLibrary,
     TrySketch,
-    TryTexts,
     TryTrace,
 )
 from playground.engine.textures import drain, is_lost
-from playground.engine.trace.tracer import try_texts
 from playground.engine.unfinished import Unfinished
 from playground.errors import (
     ContextError,
@@ -72,10 +70,6 @@ class _Handler:
                 with reading_unsaved(dict(request.unsaved)):
                     source = read_source(Path(request.path), (Path(request.folder),))
                 compile_library(self._ctx, source)
-                return SandboxReport(True)
-            if isinstance(request, TryTexts):
-                self._report(Activity(request.path, request.file))
-                try_texts(self._ctx, request)
                 return SandboxReport(True)
             if isinstance(request, TryTrace):
                 self._trace(request)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import random
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,6 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.engine.planner import smallest_terrain
-from playground.engine.sandbox import Sandbox
 from playground.engine.trace.model import Trace, first_difference
 from playground.errors import ParameterError, PlaygroundError, ShaderError, SketchError
 from playground.sketch.find import shipped_sketches
@@ -358,19 +356,6 @@ def test_two_texels_part_at_a_condition(any_engine, steps):
     one, other = (any_engine.trace(steps, "a", texel=(x, 0)) for x in (4, 9))
     first = first_difference(one, other, values=False)
     assert [(e.name, e.value) for e in first] == [("n % 2 == 0", False), ("n % 2 == 0", True)]
-
-
-def test_the_sandbox_tries_what_a_trace_compiles(any_engine, steps):
-    any_engine.read(steps, "a")
-    tracer = any_engine.tracer
-    request = tracer.request(tracer.plan(steps, "a", (64, 36), 0.0), "a")
-    assert not tracer.is_compiled(request)
-    with Sandbox() as sandbox:
-        assert sandbox.run(request).ok
-        refused = sandbox.run(replace(request, fragment=request.fragment + "nothing"))
-    assert isinstance(refused.error, ShaderError)
-    any_engine.trace(steps, "a", texel=(1, 1), size=(64, 36))
-    assert tracer.is_compiled(request)
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,6 @@ from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step
 from playground.engine.programs import Program
 from playground.engine.results import Result, Wired
 from playground.engine.runner import Runner
-from playground.engine.sandbox import TryTexts
 from playground.engine.textures import drain, floats_in, make_framebuffer, release_framebuffer, split_format
 from playground.engine.trace.capture import Capture
 from playground.engine.trace.html import trace_html
@@ -212,21 +211,6 @@ class Tracer:
                 return self._traced(run, texel, function, limit)
             finally:
                 drain(self._ctx)
-
-    def request(self, plan: Plan, path: str, function: str | None = None) -> TryTexts:
-        """Return what the sandbox has to try before a step of a plan is traced; raises as ``trace``."""
-        ref = _ref(plan, path)
-        step, loops = self._step(plan, ref)
-        renderer = self._renderer
-        with renderer.supposing(plan), renderer.borrowed():
-            run = self._run_of(plan, step, loops, ref, None)
-            _, traced = self._instrumented(run, function)
-        formats = (*(output.format for output in step.kernel.outputs), *_RECORDING)
-        return TryTexts(_vertex_of(traced), traced.text, formats, step.path, step.kernel.path)
-
-    def is_compiled(self, request: TryTexts) -> bool:
-        """Return whether a text is compiled here, so that a trace by it takes milliseconds."""
-        return (request.vertex, request.fragment) in self._programs
 
     # ── what is traced ───────────────────────────────────────────────────────
 
@@ -532,22 +516,6 @@ class Tracer:
         while len(self._targets) > _MAX_TARGETS:
             self._targets.pop(next(iter(self._targets))).release()
         return target
-
-
-def try_texts(ctx: moderngl.Context, request: TryTexts) -> None:
-    """Compile what a trace draws, and draw a few fragments.
-
-    Raises ``ShaderError`` where the driver refuses it.
-    """
-    program = _program(ctx, request.vertex, request.fragment)
-    target = _Target(ctx, request.formats[: -len(_RECORDING)], 2)
-    try:
-        target.framebuffer.use()
-        program.fill()
-        ctx.finish()
-    finally:
-        target.release()
-        program.release()
 
 
 def _program(ctx: moderngl.Context, vertex: str, fragment: str) -> Program:
