@@ -42,18 +42,12 @@ class Lessons(Addition):
         self._host = host
 
     def begin(self, request: Mapping[str, object]) -> None:
-        """Open ``lesson`` by name, in a ``language`` by code, and ``present`` it.
-
-        Without a name, where the window was opened without a command: the one read last, unless the reader
-        has closed the lessons.
-        """
+        """Open ``lesson`` by name, in a ``language`` by code, and ``present`` it."""
         reader, name, language = self.reader, str(request.get("lesson", "")), str(request.get("language", ""))
         if language and not name:
             reader.progress.language = language
         if name:
             reader.open(name, language=language)
-        elif request.get("welcome") and reader.progress.shown:
-            reader.open(show=False)
         if "present" in request:
             self.stage.begin(cast(Presenting, request["present"]))
 

@@ -44,7 +44,7 @@ class Addition:
     def begin(self, request: Mapping[str, object]) -> None:
         """Do what the command that opened the window asks for, by name.
 
-        Names are those of the room's options; ``welcome``: the window was opened without a command.
+        Names are those of the room's options.
         """
 
     def toggle(self) -> None:

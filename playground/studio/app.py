@@ -436,7 +436,10 @@ class Live:
     def _draw_start_page(self) -> None:
         """Draw the rest of a frame while the start page fills the window: no sketch is drawn."""
         window, bench, guard = self.window, self.bench, self.guard
-        guard.draw("the start page", lambda: self.start_panel.draw(bench.start, window.theme), None)
+        preferences = bench.interface.preferences
+        guard.draw(
+            "the start page", lambda: self.start_panel.draw(bench.start, window.theme, preferences), None
+        )
         guard.draw("what a key asks for", lambda: act_on_keys(bench), None)
         if window.keys.waits:
             window.skip()

@@ -223,12 +223,12 @@ def open_window(
 
 
 def open_default(renderer: Renderer) -> bool:
-    """Open the default sketch in a window, where there is a display; return whether there is."""
+    """Open a window with the start page, where there is a display; return whether there is."""
     from playground.doctor import where_to_show
 
     if not where_to_show(os.environ, sys.platform):
         return False
-    open_window("", DEFAULT_PICTURE, renderer, request={"welcome": True})
+    open_window("", DEFAULT_PICTURE, renderer)
     return True
 
 

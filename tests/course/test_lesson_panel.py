@@ -203,21 +203,20 @@ def test_lessons_are_read_only_when_they_are_opened(harness, monkeypatch):
     assert [summary.title for summary in harness.reader.summaries] == ["Halving", "After it"]
 
 
-def test_bare_command_opens_window_with_lessons(monkeypatch):
+def test_bare_command_opens_window_with_the_start_page(monkeypatch):
     values: list[dict[str, object]] = []
     monkeypatch.setattr("playground.doctor.where_to_show", lambda *_: ":0")
     monkeypatch.setattr("playground.studio.commands.open_window", lambda *_, **rest: values.append(rest))
     assert cli.main([]) == 0
-    assert values == [{"request": {"welcome": True}}]
+    assert values == [{}]
 
 
-@pytest.mark.parametrize("shown", [True, False])
-def test_lessons_beside_sketch_resume_unless_closed(harness, shown):
-    harness.reader.progress.lesson, harness.reader.progress.shown = "after", shown
-    assert harness.lessons is not None
-    harness.lessons.begin({"welcome": True})
-    assert harness.reader.figure.before_lesson is None, "the sketch stays in view"
-    assert (harness.reader.lesson.name if harness.reader.lesson else "") == ("after" if shown else "")
+def test_a_lesson_begins_in_a_language_by_a_request_or_a_card(harness):
+    harness.lessons.begin({})
+    assert harness.reader.lesson is None, "no lesson opens by itself"
+    halving, after = harness.lessons.start_cards()
+    assert (halving.title, after.title) == ("Halving", "After it")
+    assert after.act() and harness.reader.lesson.name == "after"
     harness.lessons.begin({"lesson": "halving", "language": "fr"})
     harness.run_frames(3)
     assert harness.reader.lesson.title == "Moitiés" and harness.session.path == find("white_noise")

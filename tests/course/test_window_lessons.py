@@ -19,7 +19,7 @@ from pathlib import Path
 from playground.course import library
 library.TEXTS = Path(sys.argv[1])
 from playground.studio.app import run
-sys.exit(run(sys.argv[2], size=(1000, 700), request={"welcome": True}, time_limit=300))
+sys.exit(run(sys.argv[2], size=(1000, 700), request={"lesson": "halving"}, time_limit=300))
 """
 pytestmark = ON_LINUX
 
