@@ -161,19 +161,30 @@ def save_preset(file: Sketch, name: str, values: Mapping[str, Value]) -> None:
     write_over(Path(file.file), file, lambda text: with_preset(text, file, name, values), holds)
 
 
-def save_copy(file: Sketch, edited: Sketch, folder: Path) -> Path:
+def save_copy(
+    file: Sketch,
+    edited: Sketch,
+    folder: Path,
+    *,
+    main: str | None = None,
+    texts: Mapping[str, bytes] | None = None,
+) -> Path:
     """Write ``edited`` as a sketch in a new folder of ``folder``, with the files it needs; return its path.
 
-    Its own techniques and images come along; what lies in ``glsl/`` is found there.
+    Its own techniques and images come along; what lies in ``glsl/`` is found there. ``main`` takes the place
+    of what the sketch's file holds, ``texts`` of what others do, by names relative to the sketch's folder.
     Raises ``DataError`` where nothing can be written, and as ``save`` does.
     """
     source = Path(file.file)
-    text = _read(source)
+    text, texts = _read(source) if main is None else main, texts or {}
     target = _new_folder(folder, file.name)
     try:
-        for name in _own_files(file, edited):
+        for name in dict.fromkeys([*_own_files(file, edited), *texts]):
             (target / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(Path(file.folder) / name, target / name)
+            if name in texts:
+                write_file(target / name, texts[name])
+            else:
+                shutil.copyfile(Path(file.folder) / name, target / name)
         path = target / "sketch.toml"
         write_file(path, text)
         copied = load(path)

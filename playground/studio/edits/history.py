@@ -26,10 +26,11 @@ MAX_ENTRIES = 200
 """Steps that are stored; the oldest go first."""
 
 KEYFRAMES = "keyframes"
+FILES = "files"
 
 Key = tuple[str, str]
 """What can change: ("value", path), ("technique", pass), ("channel", path), ("lock", path), ("step", path),
-("camera", ""), ("keyframes", "") or ("time", "")."""
+("camera", ""), ("keyframes", ""), ("files", "") or ("time", "")."""
 CHECKED = ("technique", "channel")
 """The kinds that are shown only once they have proved good."""
 State = Mapping[Key, object]
@@ -168,7 +169,7 @@ class History:
         if not apply(values):
             return False
         self.done, self._open = self.done + by, False
-        self._due |= {key: value for key, value in values.items() if key[0] not in (KEYFRAMES, "time")}
+        self._due |= {key: value for key, value in values.items() if key[0] not in (KEYFRAMES, FILES, "time")}
         return True
 
     def saved(self, before: State) -> None:

@@ -127,7 +127,7 @@ class Memory:
         except OSError as error:
             reason = error.strerror or str(error)
             raise DataError(f"cannot be written to: {reason}", file=self.path.parent) from None
-        if not _locked(lock):
+        if not locked(lock):
             lock.close()
             return False
         self._lock = lock
@@ -140,7 +140,7 @@ class Memory:
             self._lock = None
 
 
-def _locked(file: IO[bytes]) -> bool:
+def locked(file: IO[bytes]) -> bool:
     """Lock a file without waiting; closing it unlocks it."""
     try:
         if sys.platform == "win32":
@@ -160,13 +160,13 @@ def _read(table: Any) -> Remembered:
     """Return what a file says; raise ``ValueError``, ``TypeError`` or ``KeyError`` for another's."""
     if table["format"] != FORMAT:
         raise ValueError(f"it has format {table['format']}, and this version knows {FORMAT}")
-    remembered: Remembered = _typed(Remembered, table)
+    remembered: Remembered = typed(Remembered, table)
     if not (0 < min(remembered.window) and max(remembered.window) <= _MAX_SIDE):
         remembered = replace(remembered, window=(0, 0))
     return replace(remembered, time=max(remembered.time, 0.0))
 
 
-def _typed(kind: Any, value: Any) -> Any:
+def typed(kind: Any, value: Any) -> Any:
     """Return plain data of JSON as a type: a record's fields by name, tuples as lists, finite numbers.
 
     Fields that are missing have their defaults. Raises ``TypeError`` or ``ValueError`` for what is another.
@@ -174,13 +174,13 @@ def _typed(kind: Any, value: Any) -> Any:
     kinds = get_args(kind)
     if is_dataclass(kind):
         record, types = cast(Callable[..., Any], kind), get_type_hints(kind)
-        return record(**{name: _typed(types[name], value[name]) for name in types if name in value})
+        return record(**{name: typed(types[name], value[name]) for name in types if name in value})
     if get_origin(kind) is tuple:
         if not isinstance(value, list):
             raise TypeError(f"{value!r} is no list")
         repeated = kinds[-1] is ...
         return tuple(
-            _typed(kinds[0] if repeated else part, each)
+            typed(kinds[0] if repeated else part, each)
             for part, each in zip(repeat(None) if repeated else kinds, value, strict=not repeated)
         )
     if kinds:  # of several types; a list is of whole numbers where all of them are
@@ -188,9 +188,9 @@ def _typed(kind: Any, value: Any) -> Any:
             return None
         if isinstance(value, list):
             wholes = all(type(number) is int for number in value)
-            return _typed(tuple[int, ...] if wholes else tuple[float, ...], value)
+            return typed(tuple[int, ...] if wholes else tuple[float, ...], value)
         records = [part for part in kinds if is_dataclass(part)]
-        return _typed(records[0] if records else type(value), value)
+        return typed(records[0] if records else type(value), value)
     if kind is float and type(value) in (int, float):
         if not math.isfinite(value):
             raise ValueError(f"{value} is no number to set")

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.studio.clock import stepped, toggle_loop
-from playground.studio.edits.history import KEYFRAMES, History, State, steps_of
+from playground.studio.edits.history import FILES, KEYFRAMES, History, State, steps_of
 from playground.studio.notices import Notices
 from playground.studio.paint.painting import Painting
 from playground.studio.reload.stages import ReloadStage
-from playground.studio.save.sketch_file import SketchFile
+from playground.studio.save.sketch_file import FileTexts, SketchFile
 from playground.studio.session import Session
 
 
@@ -106,6 +106,18 @@ class Undo:
         while history.done != done and history.go(1 if done > history.done else -1, self._apply):
             self.settle()
 
+    def perform(self, before: State, after: State, name: str) -> bool:
+        """Set what a step changes, and record it as one; return False, with a notice, where it is refused."""
+        self.record()
+        history = self.history
+        history.record(before, after, name, now=self.notices.now())
+        history.done -= 1
+        done = history.go(1, self._apply)
+        if not done:
+            del history.steps[history.done :]
+        self.settle()
+        return done
+
     def settle(self) -> None:
         """Take in the state of the session without a step."""
         if self.session.shown is not None:
@@ -118,6 +130,9 @@ class Undo:
         if session.shown is None:
             return False
         if isinstance(keyframes, tuple) and not self.file.write_keyframes(keyframes):
+            return False
+        texts = changes.get((FILES, ""))
+        if isinstance(texts, FileTexts) and not self.file.write_texts(texts):
             return False
         if not session.drafts.apply(changes):
             return False

@@ -7,14 +7,18 @@ its new place among the others; a new one comes after the last, or at the end of
 
 from __future__ import annotations
 
+import os
+import stat
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from operator import attrgetter
 from pathlib import Path
 
-from playground.errors import PlaygroundError, SketchError
-from playground.paths import shown
+from playground.errors import DataError, PlaygroundError, SketchError
+from playground.files import partial_file, read_regular, reason, writing
+from playground.paths import GLSL, shown
 from playground.shader.parameter import shortest
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch, Value
@@ -57,14 +61,14 @@ def save_keyframes(file: Sketch, keyframes: Sequence[Keyframe]) -> None:
 
 def with_keyframes(text: str, file: Sketch, keyframes: Sequence[Keyframe]) -> str:
     """Return a sketch's text, which says what ``file`` does, with these keyframes; they are by time."""
-    if len(_blocks(text)) != len(file.keyframes):
+    if len(blocks_of(text, "keyframe")) != len(file.keyframes):
         message = "its keyframes are written as one list; write each as a [[keyframe]] to change them here"
         raise SketchError(message, file=shown(file.file))
     before = _matched(file.keyframes, keyframes)
     for keyframe, index in zip(keyframes, before, strict=True):
         if index is not None:
             text = _changed(text, file, ("keyframe", index), file.keyframes[index], keyframe)
-    spans = _blocks(text)
+    spans = blocks_of(text, "keyframe")
     blocks = [text[start:end] for start, end in spans]
     newline = newline_of(text)
     made = [
@@ -76,6 +80,35 @@ def with_keyframes(text: str, file: Sketch, keyframes: Sequence[Keyframe]) -> st
     for block in made:
         text = append(text, block.splitlines())
     return text
+
+
+def with_presets(text: str, file: Sketch, order: Sequence[int]) -> str:
+    """Return a sketch's text with its presets in another order, without those that are not in ``order``."""
+    spans = blocks_of(text, "preset")
+    if len(spans) != len(file.presets):
+        message = "its presets are written as one list; write each as a [[preset]] to change them here"
+        raise SketchError(message, file=shown(file.file))
+    return _placed(text, spans, [text[slice(*spans[index])] for index in order], newline_of(text))
+
+
+def save_presets(file: Sketch, order: Sequence[int]) -> None:
+    """Write the presets of the file that ``file`` was loaded from in another order, or fewer of them.
+
+    ``order`` has places in ``file.presets``. Raises ``ReadOnlySketch`` and ``SketchError`` as ``save`` does.
+    """
+    wanted = tuple(file.presets[index] for index in order)
+    says_the_rest = says_same_as(file)
+
+    def is_right(reloaded: Sketch) -> bool:
+        return (
+            reloaded.presets == wanted
+            and says_the_rest(reloaded)
+            and _without_lines(reloaded.keyframes) == _without_lines(file.keyframes)
+            and [replace(shot, line=0) for shot in reloaded.shots]
+            == [replace(shot, line=0) for shot in file.shots]
+        )
+
+    write_over(Path(file.file), file, lambda text: with_presets(text, file, order), is_right)
 
 
 def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: str) -> str:
@@ -97,14 +130,14 @@ def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: s
     return text_placed + text[at:]
 
 
-def _blocks(text: str) -> list[tuple[int, int]]:
-    """Return where each keyframe's block begins and ends, without the empty lines after it."""
+def blocks_of(text: str, kind: str) -> list[tuple[int, int]]:
+    """Return where each block of a kind, as "keyframe", begins and ends, without the empty lines after it."""
     headers = [(text.rfind("\n", 0, h.start) + 1, h) for h in TomlPlaces(text).headers]
     spans = []
     for number, (start, header) in enumerate(headers):
-        if not header.is_list or header.keys != ["keyframe"]:
+        if not header.is_list or header.keys != [kind]:
             continue
-        following = (s for s, h in headers[number + 1 :] if h.keys[0] != "keyframe" or len(h.keys) == 1)
+        following = (s for s, h in headers[number + 1 :] if h.keys[0] != kind or len(h.keys) == 1)
         end = next((_above(text, s) for s in following), len(text))
         last = start + len(text[start:end].rstrip())  # the end of the last line that is not empty
         line_end = text.find("\n", last, end)
@@ -172,6 +205,71 @@ def _new_block(file: Sketch, keyframe: Keyframe, newline: str) -> str:
     return _changed(f"[[keyframe]]{newline}", file, ("keyframe", 0), empty, keyframe)
 
 
+@dataclass(frozen=True)
+class FileTexts:
+    """What files are to hold, and what they hold until then; None: there is no such file."""
+
+    becomes: tuple[tuple[Path, bytes | None], ...]
+    was: tuple[tuple[Path, bytes | None], ...]
+
+    @property
+    def back(self) -> FileTexts:
+        """The other way round."""
+        return FileTexts(self.was, self.becomes)
+
+
+def contents_of(path: Path) -> bytes | None:
+    """Return what a file holds, None where there is none; raise ``DataError`` where it cannot be read."""
+    try:
+        return read_regular(path)
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise DataError(f"cannot be read: {reason(error)}", file=path) from None
+
+
+def write_texts(texts: FileTexts) -> None:
+    """Write all files, or none of them.
+
+    Raises ``ReadOnlySketch`` for one that cannot be written or belongs to the playground itself,
+    ``SketchError`` where one holds something else than ``was``, ``DataError`` where the system refuses.
+    """
+    for path, before in texts.was:
+        file = path.resolve()
+        if file.is_relative_to(GLSL.resolve()):
+            raise ReadOnlySketch("this sketch belongs to the playground itself", file=path)
+        if not os.access(file if file.exists() else file.parent, os.W_OK):
+            raise ReadOnlySketch("this sketch cannot be written to", file=path)
+        if contents_of(file) != before:
+            raise SketchError(f"{path.name} has changed meanwhile, so nothing is written", file=shown(path))
+    written: list[Path] = []
+    try:
+        for path, data in texts.becomes:
+            written.append(path)
+            _replace(path, data)
+    except PlaygroundError:
+        before_all = dict(texts.was)
+        for path in written:
+            with suppress(PlaygroundError):
+                _replace(path, before_all[path])
+        raise
+
+
+def _replace(path: Path, data: bytes | None) -> None:
+    """Write a file, whole and with the rights that it has, or remove it."""
+    file = path.resolve()  # a link stays a link
+    with writing(file):
+        if data is None:
+            file.unlink(missing_ok=True)
+            return
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with partial_file(file) as partial:
+            partial.handle.write(data)
+            if file.exists():
+                partial.path.chmod(stat.S_IMODE(file.stat().st_mode))
+            partial.rename(file)
+
+
 @dataclass
 class SketchFile:
     """The file of one session's sketch."""
@@ -204,3 +302,7 @@ class SketchFile:
         """Write keyframes into the file; return whether that worked."""
         draft = self.session.shown
         return draft is not None and self.write(lambda: save_keyframes(draft.file, keyframes))
+
+    def write_texts(self, texts: FileTexts) -> bool:
+        """Write several files, or none; return whether that worked."""
+        return self.write(lambda: write_texts(texts))

@@ -1,0 +1,430 @@
+"""The versions of the sketch that is open: kept when a saved text has drawn, looked at, gone back to.
+
+What is saved and draws well becomes a version by itself, as does what is named. Looking at one shows it as a
+draft: its texts are read in place of what the files hold, and nothing is written.
+Going back writes the files, as one step of the history, after the present state has become a version itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.allowed_files import reading_unsaved, signature
+from playground.errors import DataError, PlaygroundError
+from playground.files import new_name, write_file
+from playground.paths import GLSL
+from playground.sketch.load import load_with
+from playground.sketch.model import Sketch
+from playground.sketch.save import save_copy
+from playground.sketch.techniques import Techniques
+from playground.studio.actions import Actions
+from playground.studio.compare.compare import Compare
+from playground.studio.edits.edits import Draft, file_values, first_draft
+from playground.studio.edits.history import FILES, Key, state_of
+from playground.studio.language import tr
+from playground.studio.reload.stages import ReloadStage
+from playground.studio.save.sketch_file import FileTexts, contents_of
+from playground.studio.versions.store import State, Version, VersionStore, hash_of_text, key_of
+
+_LOOKS = 0.05  # [s] between questions to the sandbox about a version
+
+
+@dataclass
+class _Asked:
+    """A version that is to be shown, once it has proved good."""
+
+    version: Version
+    draft: Draft
+    show: Callable[[Draft], None]
+
+
+class Versions:
+    """Those of one session's sketch."""
+
+    def __init__(
+        self,
+        actions: Actions,
+        compare: Compare,
+        *,
+        folder: Path | None = None,
+        is_left_out: Callable[[], bool] = lambda: False,
+    ) -> None:
+        self.actions = actions
+        self.session = actions.session
+        self.looked: Version | None = None  # the version that is shown as a draft
+        self.selected = ""  # the key of the one that buttons are for
+        self._compare = compare
+        self._folder = folder
+        self._is_left_out = is_left_out  # says whether what is shown is not the user's sketch
+        self._store = VersionStore(self.session.drafts.shown_path, folder)
+        self._kept_of: Sketch | None = None  # the files' text that was kept last, or could not be
+        self._current = ""  # the key of the version that was kept, or gone back to, last
+        self._hashes: tuple[tuple[str, str], ...] = ()  # of that
+        self._asked: _Asked | None = None
+        self._before: tuple[Draft, dict[str, int]] | None = None  # what looking took the place of
+        self._looked_draft: Draft | None = None
+        self._is_reported = False
+
+    # ── state ────────────────────────────────────────────────────────────────
+
+    @property
+    def items(self) -> tuple[Version, ...]:
+        """All versions, the oldest first."""
+        return self._store.versions()
+
+    @property
+    def current(self) -> str:
+        """The key of the version whose texts are those of the files."""
+        return self._current
+
+    @property
+    def is_looking(self) -> bool:
+        """Whether a version is shown, or about to be, in place of what is worked on."""
+        return self.looked is not None
+
+    @property
+    def chosen(self) -> Version | None:
+        """The version that buttons are for: the selected one, else none."""
+        return next((version for version in self.items if version.key == self.selected), None)
+
+    @property
+    def patience(self) -> float:
+        """How long nothing needs to be done here [s]."""
+        return _LOOKS if self._asked is not None else math.inf
+
+    def picture(self, version: Version) -> Path:
+        """Return the file of a version's picture; it may be missing."""
+        return self._store.picture(version)
+
+    # ── keeping ──────────────────────────────────────────────────────────────
+
+    def update(self, *, idle: bool) -> None:
+        """Go on after a frame: show what has proved good, keep what was saved; ``idle``: there is time."""
+        session = self.session
+        if session.drafts.shown_path != self._store.sketch:
+            self._switch()
+        self._go_on()
+        if self._looked_draft is not None and (
+            session.shown is None or session.shown.file is not self._looked_draft.file
+        ):
+            self._forget_look()  # a save came meanwhile
+        shown = session.shown
+        if not idle or shown is None or shown.file is self._kept_of or self.is_looking:
+            return
+        if not session.is_idle or session.error is not None or self._is_left_out():
+            return
+        texts = self._texts_as_read(shown)
+        if texts is not None:
+            self._kept_of = shown.file
+            self._keep(texts, shown)
+
+    def keep(self, name: str) -> bool:
+        """Keep the present state under a name; return whether that is done."""
+        self.leave()
+        shown = self.session.shown
+        if shown is None or not self.session.draws:
+            self._say(tr("there is no picture to keep yet"))
+            return False
+        texts = self._texts_as_read(shown)
+        if texts is None:
+            self._say(tr("what is in the files is not drawn yet; name it once it is shown"))
+            return False
+        return self._keep(texts, shown, name=name.strip(), always=True)
+
+    def rename(self, version: Version, name: str) -> None:
+        """Name a version, so that it is kept for ever; with "" it goes when there are too many."""
+        with self._reported():
+            self._store.rename(version.key, name.strip())
+
+    def remove(self, version: Version) -> None:
+        """Remove a version."""
+        if self.looked is not None and self.looked.key == version.key:
+            self.leave()
+        with self._reported():
+            self._store.remove(version.key)
+
+    def _keep(
+        self, texts: Mapping[str, bytes], draft: Draft, *, name: str = "", always: bool = False
+    ) -> bool:
+        """Keep a state; what fails is said once, or ``always``. Return whether it is kept."""
+        main = _relative(Path(draft.file.file), Path(draft.file.folder))
+        try:
+            kept = self._store.keep(
+                main, texts, _state_of(draft, self.session.view.steps), pixels=self._pixels(), name=name
+            )
+        except PlaygroundError as error:
+            if always or not self._is_reported:
+                self._is_reported = True
+                self._say(tr("no version is kept: {error}", error=error))
+            return False
+        finally:
+            self._take_complaint()
+        self._current, self._hashes = kept.key, kept.texts
+        return True
+
+    def _pixels(self) -> NDArray[np.uint8] | None:
+        try:
+            frame = self.session.read()
+        except PlaygroundError:
+            return None
+        return None if frame is None else frame.array
+
+    def _texts_as_read(self, draft: Draft) -> dict[str, bytes] | None:
+        """Return what the sketch's own files hold; None where that is not what is shown."""
+        drafts = self.session.drafts
+        texts = {}
+        for name, path in own_texts(draft.file).items():
+            now, noted = signature(path), drafts.places.get(path)
+            if now is None or (noted != now if noted else now.latest > drafts.read_at * 1e9):
+                return None
+            data = _contents(path)
+            if data is None or str(path) in drafts.texts:
+                return None
+            texts[name] = data
+        return texts
+
+    # ── looking, comparing ───────────────────────────────────────────────────
+
+    def look(self, version: Version) -> None:
+        """Show a version as a draft, once it has proved good; nothing is written."""
+        self._ask(version, self._show)
+
+    def compare(self, version: Version) -> None:
+        """Compare what is shown with a version: it becomes A."""
+        steps = dict(version.state.steps)
+        self._ask(version, lambda draft: self._compare.keep_state(draft, steps))
+
+    def leave(self) -> None:
+        """Show again what looking took the place of."""
+        self._asked = None
+        if self._before is None:
+            return
+        (draft, steps), session = self._before, self.session
+        self._forget_look()
+        self._show_draft(draft, steps)
+        session.redraw()
+
+    def _ask(self, version: Version, show: Callable[[Draft], None]) -> None:
+        self.selected = version.key
+        session = self.session
+        if session.shown is None or session.drafts.opening:
+            return
+        if session.drafts.stage not in (ReloadStage.NONE, ReloadStage.FAILED):
+            self._say(tr("what was saved is being checked; look again in a moment"))
+            return
+        with self._reported():
+            self._asked = _Asked(version, self._draft_of(version), show)
+            self._go_on()
+
+    def _go_on(self) -> None:
+        """Show the version that was asked for, once the sandbox has drawn it."""
+        asked, session = self._asked, self.session
+        if asked is None:
+            return
+        report = session.drafts.check_aside(asked.draft.sketch)
+        if report is None:
+            return
+        self._asked = None
+        if not report.ok:
+            self._say(tr("this version does not draw any more: {error}", error=report.error))
+        elif session.shown is not None and not session.drafts.opening:
+            asked.show(asked.draft)
+            if asked.show == self._show:
+                self.looked = asked.version
+
+    def _show(self, draft: Draft) -> None:
+        session = self.session
+        assert session.shown is not None and self._asked is None
+        if self._before is None:
+            self.actions.undo.record()
+            self._before = session.shown, dict(session.view.steps)
+        version = self.chosen
+        self._looked_draft = draft
+        self._show_draft(draft, dict(version.state.steps) if version else {})
+
+    def _show_draft(self, draft: Draft, steps: Mapping[str, int]) -> None:
+        self.session.drafts.show(draft)
+        self.session.view.steps.clear()
+        self.session.view.steps.update(steps)
+        self.session.redraw()
+        self.actions.undo.settle()  # no step: nothing of it is the user's work
+
+    def _forget_look(self) -> None:
+        self.looked = self._before = self._looked_draft = None
+
+    def _draft_of(self, version: Version) -> Draft:
+        """Return a version as it is drawn; raise ``PlaygroundError`` where it cannot be read any more."""
+        present = self._before[0] if self._before is not None else self.session.shown
+        assert present is not None
+        file = present.file
+        if version.texts != self._hashes or file is not self._kept_of:
+            file = self._loaded(version)
+        return first_draft(file, version.state.start)[0]
+
+    def _loaded(self, version: Version) -> Sketch:
+        texts: dict[Path, str] = {}
+        for name, data in self._store.texts(version).items():
+            path = self._path(name)
+            texts[path] = texts[path.resolve()] = _decoded(data)
+        with reading_unsaved(texts):
+            loaded = load_with(Techniques(), self._path(version.main))
+        return loaded.plainly(self.session.drafts.plain)
+
+    # ── going back, going on from ────────────────────────────────────────────
+
+    def go_back(self, version: Version) -> bool:
+        """Write a version's files and edits, as one step; the present state becomes a version first.
+
+        Return whether that is done; else a notice says why, and nothing has changed.
+        """
+        self.leave()
+        session, undo = self.session, self.actions.undo
+        shown = session.shown
+        if shown is None or session.drafts.opening:
+            return False
+        with self._reported():
+            wanted = self._store.texts(version)
+            now = {
+                name: data
+                for name, path in own_texts(shown.file).items()
+                if (data := _contents(path)) is not None
+            }
+            for name in wanted.keys() - now.keys():  # a file that what is shown no longer uses
+                data = contents_of(self._path(name))
+                now |= {name: data} if data is not None else {}
+            main = _relative(Path(shown.file.file), Path(shown.file.folder))
+            state = _state_of(shown, session.view.steps)
+            hashes = tuple((name, hash_of_text(data)) for name, data in sorted(now.items()))
+            if all(row.key != key_of(main, hashes, state) for row in self.items):
+                self._store.keep(main, now, state, pixels=self._pixels())
+            changed = [name for name, data in wanted.items() if now.get(name) != data]
+            before: dict[Key, object] = dict(state_of(shown.edits, session.view.steps))
+            after: dict[Key, object] = dict(state_of(version.state.edits, dict(version.state.steps)))
+            keys = {*before, *after}
+            before, after = {k: before.get(k) for k in keys}, {k: after.get(k) for k in keys}
+            if changed:
+                texts = FileTexts(
+                    tuple((self._path(name), wanted[name]) for name in changed),
+                    tuple((self._path(name), now.get(name)) for name in changed),
+                )
+                before[FILES, ""], after[FILES, ""] = texts.back, texts
+            elif before == after:
+                self._say(tr("this version is what is shown"))
+                return False
+            if not undo.perform(before, after, tr("Back to {version}", version=title_of(version))):
+                return False
+            self._current, self._hashes, self._kept_of = version.key, version.texts, None
+            return True
+        return False
+
+    def as_new_sketch(self, version: Version) -> bool:
+        """Write a version as a sketch of its own in the folder for copies, and open it."""
+        self.leave()
+        with self._reported():
+            texts = self._store.texts(version)
+            if Path(version.main).suffix != ".toml":
+                with new_name(self.actions.folder / Path(version.main).name) as path:
+                    write_file(path, texts[version.main])
+            else:
+                draft = self._draft_of(version)
+                own = {name: data for name, data in texts.items() if name != version.main}
+                main = _decoded(texts[version.main])
+                path = save_copy(draft.file, draft.sketch, self.actions.folder, main=main, texts=own)
+            if self.actions.open(path):
+                self._say(tr("the version is a sketch of its own: {path}; Backspace goes back", path=path))
+                return True
+        return False
+
+    # ── parts ────────────────────────────────────────────────────────────────
+
+    def _switch(self) -> None:
+        """Go on with the versions of another sketch: the one that is shown."""
+        self._store = VersionStore(self.session.drafts.shown_path, self._folder)
+        self._forget_look()
+        self._asked, self._kept_of, self._current, self._hashes = None, None, "", ()
+        self._is_reported, self.selected = False, ""
+
+    def _path(self, name: str) -> Path:
+        return self._sketch_folder() / name
+
+    def _sketch_folder(self) -> Path:
+        shown = self.session.shown
+        return Path(shown.file.folder) if shown is not None else self._store.sketch.parent
+
+    @contextmanager
+    def _reported(self) -> Iterator[None]:
+        """Put what goes wrong in the block on the screen."""
+        try:
+            yield
+        except PlaygroundError as error:
+            self._say(str(error))
+        finally:
+            self._take_complaint()
+
+    def _take_complaint(self) -> None:
+        if self._store.complaint:
+            self._say(self._store.complaint)
+            self._store.complaint = ""
+
+    def _say(self, text: str) -> None:
+        self.actions.notices.say(text)
+
+
+def own_texts(sketch: Sketch) -> dict[str, Path]:
+    """Return a sketch's own texts, by their names relative to its folder; what ships is none of them.
+
+    Of a sketch that ships itself they are its file and those beside it.
+    """
+    folder, main = Path(sketch.folder), Path(sketch.file)
+    files = [main, *(Path(name) for name in sketch.files)]
+    own = [path for path in files if path.is_relative_to(folder) and (folder != GLSL or path == main)]
+    return {_relative(path, folder): path for path in own if not _is_part(path)} | {
+        _relative(main, folder): main
+    }
+
+
+def title_of(version: Version) -> str:
+    """Return what a version is called: its name, else when it was kept."""
+    from datetime import datetime
+
+    return version.name or datetime.fromtimestamp(version.at).strftime("%d.%m. %H:%M:%S")
+
+
+def _is_part(path: Path) -> bool:
+    """Return whether a name is no file's own, as that of a kernel inside another text."""
+    return not path.suffix or not path.is_file()
+
+
+def _relative(path: Path, folder: Path) -> str:
+    return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else path.name
+
+
+def _contents(path: Path) -> bytes | None:
+    try:
+        return contents_of(path)
+    except DataError:
+        return None
+
+
+def _decoded(data: bytes) -> str:
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _state_of(draft: Draft, steps: Mapping[str, int]) -> State:
+    edits = draft.edits
+    return State(
+        edits,
+        tuple(sorted(file_values(draft.base, [path for path, _ in edits.values]).items())),
+        draft.file.camera if edits.camera is not None else None,
+        tuple(sorted(steps.items())),
+    )
