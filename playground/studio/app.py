@@ -273,6 +273,7 @@ class Live:
                 self.bench.inspection.patience(now),
                 self.bench.tracing.patience,
                 self.live_texel.patience,
+                self.bench.versions.patience,
                 *(addition.patience for addition in self.additions),
             )
             patience = min(self._patience(), *others)
@@ -308,6 +309,7 @@ class Live:
 
     def _open(self, path: Path) -> None:
         """Open another sketch with what is remembered of it; the one that is left becomes a recent one."""
+        self.bench.versions.leave()
         self.note_recent()
         self.autosave.open(path)
 
@@ -553,10 +555,19 @@ class Live:
             self.warnings.look()
         self.status.write(self.bench, self.finite.non_finite)
         self.remotes.tell()
+        self.guard.run("keeping versions", lambda: self._keep_versions(idle=is_idle), None)
         for addition in self.additions:
             addition.update(idle=is_idle and not imgui.is_mouse_down(0))
 
+    def _keep_versions(self, *, idle: bool) -> None:
+        versions, looked = self.bench.versions, self.bench.versions.looked
+        versions.update(idle=idle and not imgui.is_mouse_down(0))
+        if versions.looked is not looked:
+            self._settling = _SETTLES
+
     def _remember(self) -> None:
+        if self.bench.versions.is_looking:
+            return  # it is not what is worked on
         geometry = self.place.geometry()
         self.autosave.look((geometry.width, geometry.height), (geometry.x, geometry.y))
 

@@ -25,6 +25,7 @@ from playground.studio.save.sketch_file import SketchFile
 from playground.studio.session import Session
 from playground.studio.start.page import Card, StartPage
 from playground.studio.trace.tracing import TraceSandbox, Tracing
+from playground.studio.versions.versions import Versions
 
 if TYPE_CHECKING:
     from playground.studio.theme import Theme
@@ -63,7 +64,12 @@ class Workbench:
         self.panes = Panes(self.interface.preferences)
         self.tabs: list[Tab] = []  # of the strip below the picture
         self.additions: list[Addition] = []  # of the rooms that can be removed
+        self.versions = Versions(self.actions, self.inspection.compare, is_left_out=self._shows_rooms_own)
         self.controllers = Controllers(session, self.notices)
+
+    def _shows_rooms_own(self) -> bool:
+        """Return whether the sketch that is shown is a room's, and not the user's."""
+        return any(addition.shows_own for addition in self.additions)
 
     def _cards(self) -> Iterator[Card]:
         """Yield what rooms add to the start page."""
