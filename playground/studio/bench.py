@@ -50,7 +50,7 @@ class Workbench:
         self.session = session
         self.window = window
         self.notices = Notices(now)
-        self.problems = Problems()
+        self.problems = Problems(unsaved=session.drafts.unsaved)
         self.inspection = Inspection(session)
         self.tracing = Tracing(session, trace_sandbox)
         self.painting = Painting(session, folder, wake=wake)

@@ -965,3 +965,46 @@ def test_nothing_reads_picture_while_new_data_is_checked(session: Session, data_
     assert session.is_idle and inspector.at((6, 6), picture) is not None
     for made_there in (inspector, thumbnails, compare):
         made_there.release()
+
+
+# ── texts that are typed and not saved ────────────────────────────────────────
+
+
+def test_what_is_typed_is_drawn_as_if_it_were_saved(harness: Harness) -> None:
+    """Against the same text saved; the file stays as it was, and is read again once nothing is typed."""
+    file = harness.folder / "one/hills.glsl"
+    typed = DESK_KERNEL.replace("0.5 * previous(texel)", "0.25 * previous(texel)")
+    before = harness.session.read_values("height:height")
+    harness.drafts.take_typed(file, typed)
+    harness.answer(GOOD)
+    drawn = harness.session.read_values("height:height")
+    assert file.read_text(encoding="utf-8") == DESK_KERNEL
+    harness.drafts.take_typed(file, None)
+    harness.answer(GOOD)
+    assert np.array_equal(harness.session.read_values("height:height"), before)
+    harness.save("0.5 * previous", "0.25 * previous", "one/hills.glsl")
+    harness.answer(GOOD)
+    assert np.array_equal(harness.session.read_values("height:height"), drawn)
+    assert not np.array_equal(drawn, before)
+
+
+def test_a_mistake_that_is_typed_keeps_the_picture_and_names_its_line(harness: Harness) -> None:
+    file, shown = harness.folder / "one/sketch.toml", harness.session.shown
+    harness.drafts.take_typed(file, file.read_text(encoding="utf-8").replace("size = 9", "size = nine"))
+    harness.frame()
+    assert harness.session.shown is shown
+    (wrong,) = harness.session.error.diagnostics
+    harness.bench.problems.take(harness.session.error)
+    assert (wrong.line, harness.bench.problems.lines_around(wrong)[1]) == (2, (2, "size = nine"))
+    harness.drafts.take_typed(file, None)
+    harness.frame()
+    assert harness.session.error is None
+
+
+def test_the_newest_of_what_is_typed_is_checked(harness: Harness) -> None:
+    file = harness.folder / "one/hills.glsl"
+    for number in (0.1, 0.2, 0.3):
+        harness.drafts.take_typed(file, DESK_KERNEL.replace("0.25", str(number)))
+    harness.answer(GOOD)
+    assert values_of(harness.session.sketch)[LEVEL] == 0.3
+    assert not harness.drafts.testing

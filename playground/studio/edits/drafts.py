@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from functools import reduce
 from pathlib import Path
 
-from playground.allowed_files import Signature, noting_places
+from playground.allowed_files import Signature, noting_places, reading_unsaved
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.engine.sketch_warnings import newly_shadowed
 from playground.errors import ParameterError, PlaygroundError
@@ -111,6 +111,7 @@ class Drafts:
         self.read_at = 0.0  # [s since the epoch] when the files were last read
         self.places: dict[Path, Signature | None] = {}  # where files were looked for, and what was there
         self.texts: Mapping[str, str] = {}  # replace shaders' files, by absolute path
+        self.unsaved: dict[Path, str] = {}  # are read in place of what is on disk, by absolute path
         self.plain = plain  # every technique in its canonical form
         self.draw_error: PlaygroundError | None = None  # of what is shown
         self.opening = False  # another sketch is coming than the one that is shown
@@ -201,7 +202,7 @@ class Drafts:
         shown = None if self.opening else self.shown
         old = None if self.opening else self.shown or self.coming
         try:
-            with noting_places() as self.places:
+            with reading_unsaved(self.unsaved), noting_places() as self.places:
                 loaded = with_texts(load_with(self._techniques.begin(), self.path), self.texts)
             loaded = loaded.plainly(self.plain)
             draft, notes = reload_draft(old, loaded) if old else first_draft(loaded, self._start)
@@ -257,6 +258,20 @@ class Drafts:
         if texts != self.texts:
             self.texts = dict(texts)
             self.reload()
+
+    def take_typed(self, path: Path, text: str | None) -> None:
+        """Read a text in place of what a file holds, which stays; None: the file itself again.
+
+        What it says is shown once it has proved good, as if it had been saved.
+        """
+        before = self.unsaved.get(path)
+        for place in {path, path.resolve()}:  # a reader follows links to some files
+            if text is None:
+                self.unsaved.pop(place, None)
+            else:
+                self.unsaved[place] = text
+        if text != before:
+            self.reload([path])
 
     def run_plain(self, plain: bool) -> None:
         """Run every technique in its canonical form, or fast variants again where they are verified."""

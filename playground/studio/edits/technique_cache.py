@@ -4,7 +4,8 @@ A live session loads its sketch at every save, which changes one file of a hundr
 is reused, as the same object, where every text that it was read from is the same, and every
 other place where a file was looked for has the same signature. A text is read again unless its
 file's signature proves that it is the same: a save may keep inode, size and time of modification,
-two saves may fall into one tick of a clock, and Windows has no time that no program sets.
+two saves may fall into one tick of a clock, and Windows has no time that no program sets. A text that
+is taken in place of a file's (``reading_unsaved``) is compared each time.
 """
 
 from __future__ import annotations
@@ -15,7 +16,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from playground.allowed_files import Signature, note_again, noting_part, signature_in_load, texts_of_load
+from playground.allowed_files import (
+    Signature,
+    note_again,
+    noting_part,
+    signature_in_load,
+    texts_of_load,
+    unsaved_texts,
+)
 from playground.errors import PlaygroundError
 from playground.memo import Memo
 from playground.paths import GLSL
@@ -39,8 +47,9 @@ class _Entry:
 
     def is_fresh(self) -> bool:
         """Return whether all files that it was read from are unchanged."""
+        unproven = self.unproven | unsaved_texts().keys()
         return all(
-            (signature_in_load(path) == signature and path not in self.unproven) or self._has_same_text(path)
+            (signature_in_load(path) == signature and path not in unproven) or self._has_same_text(path)
             for path, signature in self.places.items()
         )
 
@@ -90,11 +99,14 @@ class TechniqueCache(Techniques):
                 technique = super().read(use, folder, root)
         finally:
             self.deepest, depth = max(around, self.deepest), self.deepest - len(self.open)
-        in_load = texts_of_load() or {}
+        unsaved = unsaved_texts()
+        in_load = (texts_of_load() or {}) | {(path, False): text for path, text in unsaved.items()}
         keys = [(path, any_encoding) for path in places for any_encoding in (False, True)]
         texts = {key: in_load[key] for key in keys if key in in_load}
         rested = 0 if os.name == "nt" else began - RESTED * 1e9
         unproven = frozenset(
-            path for path, _ in texts if (signature := places[path]) is None or signature.latest >= rested
+            path
+            for path, _ in texts
+            if path in unsaved or (signature := places[path]) is None or signature.latest >= rested
         )
         return self._cached.put(name, _Entry(technique, places, texts, unproven, depth))

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import contextlib
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from playground.allowed_files import root_of
+from playground.allowed_files import reading_unsaved, root_of, unsaved_texts
 from playground.data.content_hash import content_hash
 from playground.data.live_inputs import LiveInputs
 from playground.engine.plan import Plan
@@ -40,6 +40,7 @@ class Problems:
     at: int = -1  # which is looked at; -1: none yet
     heights: dict[tuple[int, float], float] = field(default_factory=dict)  # of each as drawn, by width
     moved: bool = False  # it was moved to another, which must come into view
+    unsaved: Mapping[Path, str] = field(default_factory=dict)  # texts in place of what files hold, by path
     _error: PlaygroundError | None = None
     _also: tuple[Diagnostic, ...] = ()  # mistakes in files after the first wrong one
 
@@ -58,6 +59,12 @@ class Problems:
 
         ``sketch`` is the one that is shown: what else of its files cannot be read is reported as well.
         """
+        with reading_unsaved(self.unsaved):
+            self._take(error, warnings, sketch)
+
+    def _take(
+        self, error: PlaygroundError | None, warnings: Iterable[Diagnostic], sketch: Sketch | None
+    ) -> None:
         if error is not self._error:
             self._also = () if error is None else unreadable(sketch)
         diagnostics = () if error is None else tuple(dict.fromkeys((*error.diagnostics, *self._also)))
@@ -110,7 +117,8 @@ class Problems:
         """Return (number, text) of the lines around a mistake; its own alone where the file has gone on."""
         if not diagnostic.line:
             return []
-        lines = _lines_of(diagnostic.file)
+        with reading_unsaved(self.unsaved):
+            lines = _lines_of(diagnostic.file)
         here = diagnostic.line - 1
         own = diagnostic.excerpt or (lines[here] if here < len(lines) else "")
         if here >= len(lines) or lines[here].rstrip() != own.rstrip():
@@ -137,6 +145,8 @@ class Problems:
 def _lines_of(name: str) -> list[str]:
     """Return the lines of a file as an error names it; none of a part of one, or where it cannot be read."""
     path = path_named(name) if name and without_part(name) == name else None
+    if path is not None and (unsaved := unsaved_texts().get(path)) is not None:
+        return unsaved.split("\n")
     try:
         return _lines_at(path, content_hash(path)) if path is not None else []
     except (OSError, PlaygroundError):
