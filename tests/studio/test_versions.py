@@ -227,6 +227,7 @@ def test_going_back_is_one_step_and_loses_nothing(harness: Harness, versions: Ve
     assert kernel.read_text() == KERNEL
     assert (harness.level, harness.size) == (0.25, 9)
     assert len(harness.bench.undo.history.steps) == steps + 1
+    assert "new value" not in harness.messages
     present = versions.items[-1]
     assert dict(present.state.edits.values) == {LEVEL: 0.75}, "the present state was kept first"
     harness.bench.undo.undo()
@@ -248,6 +249,22 @@ def test_going_back_keeps_what_is_wrong_in_the_files(harness: Harness, versions:
     broken = versions._store.texts(versions.items[-1])["hills.glsl"]
     assert b"retrun" in broken
     assert (harness.folder / "one/hills.glsl").read_text() == KERNEL
+
+
+def test_what_is_typed_and_not_saved_is_kept_before_going_back(harness: Harness, versions: Versions) -> None:
+    kernel = harness.folder / "one/hills.glsl"
+    first = versions.items[0]
+    harness.drafts.take_typed(kernel, KERNEL.replace("level = 0.25", "level = 0.5"))
+    harness.answer(GOOD)
+    harness.frame()
+    versions.update(idle=True)
+    assert harness.level == 0.5
+    assert len(versions.items) == 1, "it is not saved"
+    assert versions.go_back(first)
+    harness.answer(GOOD)
+    harness.frame()
+    assert (harness.level, kernel.read_text()) == (0.25, KERNEL)
+    assert b"level = 0.5" in versions._store.texts(versions.items[-1])["hills.glsl"]
 
 
 def test_an_undo_does_not_write_over_what_was_saved_since(harness: Harness, versions: Versions) -> None:

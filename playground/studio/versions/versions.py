@@ -185,7 +185,7 @@ class Versions:
             if now is None or (noted != now if noted else now.latest > drafts.read_at * 1e9):
                 return None
             data = _contents(path)
-            if data is None or str(path) in drafts.texts:
+            if data is None or path in drafts.unsaved or str(path) in drafts.texts:
                 return None
             texts[name] = data
         return texts
@@ -291,20 +291,18 @@ class Versions:
             return False
         with self._reported():
             wanted = self._store.texts(version)
-            now = {
-                name: data
-                for name, path in own_texts(shown.file).items()
-                if (data := _contents(path)) is not None
-            }
+            own, drafts = own_texts(shown.file), session.drafts
+            now = {name: data for name, path in own.items() if (data := _contents(path)) is not None}
             for name in wanted.keys() - now.keys():  # a file that what is shown no longer uses
                 data = contents_of(self._path(name))
-                now |= {name: data} if data is not None else {}
-            main = _relative(Path(shown.file.file), Path(shown.file.folder))
-            state = _state_of(shown, session.view.steps)
-            hashes = tuple((name, hash_of_text(data)) for name, data in sorted(now.items()))
-            if all(row.key != key_of(main, hashes, state) for row in self.items):
-                self._store.keep(main, now, state, pixels=self._pixels())
-            changed = [name for name, data in wanted.items() if now.get(name) != data]
+                now |= {name: data} if data not in (None, wanted[name]) else {}
+            typed = {
+                name: drafts.unsaved[path].encode() for name, path in own.items() if path in drafts.unsaved
+            }
+            self._keep_present(now | typed, shown)
+            for name in typed:
+                drafts.take_typed(own[name], None)
+            changed = [name for name, data in wanted.items() if _contents(self._path(name)) != data]
             before: dict[Key, object] = dict(state_of(shown.edits, session.view.steps))
             after: dict[Key, object] = dict(state_of(version.state.edits, dict(version.state.steps)))
             keys = {*before, *after}
@@ -316,8 +314,9 @@ class Versions:
                 )
                 before[FILES, ""], after[FILES, ""] = texts.back, texts
             elif before == after:
-                self._say(tr("this version is what is shown"))
-                return False
+                if not typed:
+                    self._say(tr("this version is what is shown"))
+                return bool(typed)
             if not undo.perform(before, after, tr("Back to {version}", version=title_of(version))):
                 return False
             self._current, self._hashes, self._kept_of = version.key, version.texts, None
@@ -341,6 +340,14 @@ class Versions:
                 self._say(tr("the version is a sketch of its own: {path}; Backspace goes back", path=path))
                 return True
         return False
+
+    def _keep_present(self, texts: Mapping[str, bytes], draft: Draft) -> None:
+        """Keep what is about to be written over, unless it is a version already; raise ``DataError``."""
+        main = _relative(Path(draft.file.file), Path(draft.file.folder))
+        state = _state_of(draft, self.session.view.steps)
+        hashes = tuple((name, hash_of_text(data)) for name, data in sorted(texts.items()))
+        if all(row.key != key_of(main, hashes, state) for row in self.items):
+            self._store.keep(main, texts, state, pixels=self._pixels())
 
     # ── parts ────────────────────────────────────────────────────────────────
 
