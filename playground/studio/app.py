@@ -71,6 +71,7 @@ from playground.studio.start.panel import StartPanel
 from playground.studio.status import Status
 from playground.studio.trace.live import LiveTexelFile
 from playground.studio.trace.panel import TracePanel, act_on_picture, draw_mark
+from playground.studio.versions.panel import VersionsPanel
 from playground.studio.window import Window, WindowPlacement, wake
 
 if TYPE_CHECKING:
@@ -247,6 +248,8 @@ class Live:
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
         self.start_panel = StartPanel(window.ctx)
+        self.versions_panel = VersionsPanel(window.ctx, self.bench.versions)
+        self.bench.tabs.append(self.versions_panel.tab)
         self.status = Status()
         autosave.compare = self.bench.inspection.compare
         self.bench.actions.opens = self._open
@@ -334,6 +337,7 @@ class Live:
         self.bench.tracing.release()
         self.live_texel.close()
         self.start_panel.release()
+        self.versions_panel.release()
         for addition in self.additions:
             addition.release()
         self.painter.release()
@@ -351,6 +355,7 @@ class Live:
         self.caching.attach(self.session.engine)
         self.painter = Painter(self.window.ctx)
         self.start_panel = StartPanel(self.window.ctx)
+        self.versions_panel.rebuild(self.window.ctx)
         self._settling = _SETTLES
 
     def _patience(self) -> float:

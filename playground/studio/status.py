@@ -71,6 +71,8 @@ class Status:
             "trying": checking[0] if checking[1] >= PATIENCE else "",
             "layers": open_layers(bench),
             "trace": bench.tracing.status(),
+            "versions": [version.name for version in bench.versions.items],
+            "looked": bench.versions.is_looking,
         }
         for addition in bench.additions:
             now |= addition.status()

@@ -193,6 +193,19 @@ def test_looking_writes_nothing_and_ends_where_it_began(harness: Harness, versio
     assert len(harness.bench.undo.history.steps) == steps
 
 
+def test_what_is_edited_while_looking_is_kept_as_another(harness: Harness, versions: Versions) -> None:
+    save(harness, "level = 0.25", "level = 0.5")
+    versions.look(versions.items[0])
+    ask(harness, versions)
+    harness.drafts.set(LEVEL, 0.875)
+    harness.frame()
+    versions.leave()
+    harness.frame()
+    assert harness.level == 0.5
+    assert dict(versions.items[-1].state.edits.values) == {LEVEL: 0.875}
+    assert len(versions.items) == 3
+
+
 def test_a_save_ends_looking(harness: Harness, versions: Versions) -> None:
     save(harness, "level = 0.25", "level = 0.5")
     versions.look(versions.items[0])

@@ -207,6 +207,7 @@ class Versions:
         if self._before is None:
             return
         (draft, steps), session = self._before, self.session
+        self._keep_edited()
         self._forget_look()
         self._show_draft(draft, steps)
         session.redraw()
@@ -255,6 +256,16 @@ class Versions:
         self.session.view.steps.update(steps)
         self.session.redraw()
         self.actions.undo.settle()  # no step: nothing of it is the user's work
+
+    def _keep_edited(self) -> None:
+        """Keep what was edited over the version that is looked at, as a version of its own."""
+        looked, shown, before = self.looked, self.session.shown, self._looked_draft
+        if looked is None or shown is None or before is None or shown.edits == before.edits:
+            return
+        with self._reported():
+            texts, state = self._store.texts(looked), _state_of(shown, self.session.view.steps)
+            self._store.keep(looked.main, texts, state, pixels=self._pixels())
+            self._say(tr("what you changed over that version is kept as another"))
 
     def _forget_look(self) -> None:
         self.looked = self._before = self._looked_draft = None
