@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import moderngl
@@ -22,8 +23,7 @@ if TYPE_CHECKING:
 
 _CAPTION = 22.0  # [units of scale 1] below a picture
 _LEAST, _MOST = 54.0, 108.0  # that a picture is high
-_STAR = "\N{BLACK STAR} "
-_NAME_LETTERS = 14  # that the field for a name is wide
+_NAME_LETTERS = 10  # that the field for a name is wide
 
 
 class VersionsPanel:
@@ -122,18 +122,17 @@ class VersionsPanel:
             ("As a new sketch", "as new", "A copy in a folder of its own, opened", versions.as_new_sketch),
             ("Remove", "remove", "Take it from the list", versions.remove),
         ):
-            imgui.same_line()
+            _next(tr(label))
             if button(f"{tr(label)}###{key}", tr(note)):
                 act(chosen)
-        imgui.same_line()
+        _next(tr("To the present"))
         if button(f"{tr('To the present')}###present", tr("End looking: what is worked on is shown again")):
             self._to_present()
         if versions.is_looking:
-            imgui.same_line()
-            imgui.text_colored(
-                theme.colour(theme.palette.warm),
-                fitting(tr("shown: {version}; nothing is written", version=title_of(chosen)), _left()),
-            )
+            text = tr("only looked at")
+            _next(text)
+            imgui.text_colored(theme.colour(theme.palette.warm), text)
+            imgui.set_item_tooltip(tr("The files are as they were; nothing is written"))
 
     def _to_present(self) -> None:
         self.versions.leave()
@@ -168,12 +167,15 @@ class VersionsPanel:
         if version.key == versions.selected or lit:
             wide = (2.5 if version.key == versions.selected else 1.0) * look.scale
             draw.add_rect(corner, far, theme.packed(theme.palette.accent), radius, wide)
-        star = _STAR if version.name else ""
         now = f"{tr('now')} · " if version.key == versions.current else ""
-        text = fitting(f"{star}{now}{title_of(version)}", size.x - 10 * look.scale)
-        ink = theme.palette.warm if version.name else theme.palette.ink
+        left, middle = corner.x + 5 * look.scale, low + _CAPTION * look.scale / 2
+        if version.name:
+            _draw_star(draw, ImVec2(left + 6 * look.scale, middle), 6 * look.scale)
+            left += 16 * look.scale
         with look.font(look.text, theme.SMALL):
-            draw.add_text(ImVec2(corner.x + 5 * look.scale, low + 3 * look.scale), theme.packed(ink), text)
+            text = fitting(f"{now}{title_of(version)}", far.x - 4 * look.scale - left)
+            top = middle - imgui.get_font_size() / 2
+            draw.add_text(ImVec2(left, top), theme.packed(theme.palette.ink), text)
         if hovered and imgui.is_mouse_double_clicked(0):
             versions.go_back(version)
             versions.selected = ""
@@ -214,6 +216,24 @@ class VersionsPanel:
         return texture
 
 
+def _next(label: str) -> None:
+    """Go on in the same line, where a button of this label has room in it."""
+    style = imgui.get_style()
+    edge = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+    wide = imgui.calc_text_size(label).x + 2 * style.frame_padding.x + style.item_spacing.x
+    if imgui.get_item_rect_max().x + wide <= edge:
+        imgui.same_line()
+
+
+def _draw_star(draw: imgui.ImDrawList, middle: ImVec2, radius: float) -> None:
+    """Draw a star of five points, for which the font has no letter."""
+    points = []
+    for number in range(10):
+        angle, away = math.pi * number / 5, radius if number % 2 == 0 else 0.4 * radius
+        points.append(ImVec2(middle.x + away * math.sin(angle), middle.y - away * math.cos(angle)))
+    draw.add_concave_poly_filled(points, theme.packed(theme.palette.warm))
+
+
 def _left() -> float:
     return max(imgui.get_content_region_avail().x, 1.0)
 
@@ -223,6 +243,6 @@ def _note(version: Version) -> str:
     from datetime import datetime
 
     edits = version.state.edits
-    lines = [datetime.fromtimestamp(version.at).strftime("%Y-%m-%d %H:%M:%S")]
+    lines = [datetime.fromtimestamp(version.at).strftime("%Y-%m-%d %H:%M:%S")] if version.name else []
     lines.append(tr("{files} texts, {values} values set", files=len(version.texts), values=len(edits.values)))
     return "\n".join(lines)

@@ -412,7 +412,9 @@ def title_of(version: Version) -> str:
     """Return what a version is called: its name, else when it was kept."""
     from datetime import datetime
 
-    return version.name or datetime.fromtimestamp(version.at).strftime("%d.%m. %H:%M:%S")
+    at = datetime.fromtimestamp(version.at)
+    is_today = at.date() == datetime.now().date()
+    return version.name or at.strftime("%H:%M:%S" if is_today else "%Y-%m-%d %H:%M")
 
 
 def _is_part(path: Path) -> bool:
