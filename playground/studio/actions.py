@@ -16,10 +16,10 @@ from playground.sketch.pasted import keep_text
 from playground.sketch.save import save, save_copy, save_preset, saved_text
 from playground.studio.channels.channels import source_of
 from playground.studio.edits.edits import Draft
-from playground.studio.edits.history import History, Key
+from playground.studio.edits.history import FILES, History, Key
 from playground.studio.edits.undo import Undo
 from playground.studio.notices import Notices
-from playground.studio.save.sketch_file import SketchFile
+from playground.studio.save.sketch_file import FileTexts, SketchFile, contents_of, save_presets
 from playground.studio.save.sketch_of_shader import is_shader, save_as_sketch
 from playground.studio.session import Session
 
@@ -173,8 +173,53 @@ class Actions:
         values = {path: value for path, value in draft.applied.items() if not isinstance(value, str)}
         if not values:
             self.notices.say("no value is edited, so the preset would be empty")
-        elif self.file.write(lambda: save_preset(draft.file, name.strip(), values)):
+        elif self._write_step(
+            draft, lambda: save_preset(draft.file, name.strip(), values), f"Save the preset {name.strip()}"
+        ):
             self.notices.say(f"saved {counted(len(values), 'value')} as the preset {name.strip()}")
+
+    def move_preset(self, name: str, by: int) -> None:
+        """Move a preset up (-1) or down (1) in the sketch's file, as one step; at the ends it stays."""
+        draft = self.session.shown
+        names = [preset.name for preset in draft.file.presets] if draft is not None else []
+        if draft is None or name not in names or not 0 <= names.index(name) + by < len(names):
+            return
+        at, order = names.index(name), list(range(len(names)))
+        order[at], order[at + by] = order[at + by], order[at]
+        self._write_step(draft, lambda: save_presets(draft.file, order), f"Move the preset {name}")
+
+    def delete_preset(self, name: str) -> None:
+        """Delete a preset from the sketch's file, as one step; what it set stays set."""
+        draft = self.session.shown
+        names = [preset.name for preset in draft.file.presets] if draft is not None else []
+        if draft is None or name not in names:
+            return
+        shots = [shot.name for shot in draft.file.shots if shot.preset == name]
+        if shots:
+            self.notices.say(f"the preset {name} is not deleted: the shot {shots[0]} uses it")
+            return
+        order = [at for at, other in enumerate(names) if other != name]
+        if self._write_step(draft, lambda: save_presets(draft.file, order), f"Delete the preset {name}"):
+            self.notices.say(f"deleted the preset {name}; Ctrl+Z brings it back")
+
+    def _write_step(self, draft: Draft, act: Callable[[], None], name: str) -> bool:
+        """Write into the sketch's file, as one step of the history; return whether that worked."""
+        path = Path(draft.file.file)
+        self.undo.record()
+        was: bytes | None = None
+
+        def write() -> None:
+            nonlocal was
+            was = contents_of(path)
+            act()
+
+        if not self.file.write(write):
+            return False
+        texts = FileTexts(((path, contents_of(path)),), ((path, was),))
+        before, after = {(FILES, ""): texts.back}, {(FILES, ""): texts}
+        self.undo.history.record(before, after, name, now=self.notices.now())
+        self.undo.settle()
+        return True
 
     def copy_toml(self, copy: Callable[[str], None]) -> None:
         """Copy the sketch's text as it would be saved; ``copy`` puts a text on the clipboard."""

@@ -203,6 +203,68 @@ def test_preset_shows_changes_since_and_new_one_is_saved(bare: Bare, folder: Pat
     ]
 
 
+PRESETS = """# first of all
+[[preset]]
+name = "low"  # flat
+set = { "height.level" = 0.25 }
+
+# as in the Alps
+[[preset]]
+name = "high"
+[preset.set]
+"height.level" = 1.0  # the top
+
+[[preset]]
+name = "middle"
+set = { "height.level" = 0.5 }
+"""
+
+
+def test_presets_are_moved_and_deleted_each_as_one_step(bare: Bare, folder: Path) -> None:
+    path = folder / "sketch.toml"
+    head = SKETCH.partition("[[preset]]")[0]
+    path.write_text(head + PRESETS, encoding="utf-8")
+    bare.session.drafts.reload()
+    bare.run_frames(5)
+    low, high, middle = PRESETS.split("\n\n")
+
+    def names() -> list[str]:
+        return [preset.name for preset in bare.session.sketch.presets] if bare.session.sketch else []
+
+    bare.click("…###preset order")
+    bare.click("Up###up 1")
+    bare.run_frames(5)
+    assert names() == ["high", "low", "middle"]
+    assert path.read_text(encoding="utf-8") == head + "\n\n".join((high, low, middle))
+    bare.click("Delete###delete 0")
+    bare.run_frames(5)
+    assert names() == ["low", "middle"]
+    assert path.read_text(encoding="utf-8") == head + "\n\n".join((low, middle))
+    assert [step.name for step in bare.bench.undo.history.steps] == [
+        "Move the preset high",
+        "Delete the preset high",
+    ]
+    for expected in (["high", "low", "middle"], ["low", "high", "middle"]):
+        bare.bench.undo.undo()
+        bare.run_frames(5)
+        assert names() == expected
+    assert path.read_text(encoding="utf-8") == head + PRESETS
+    bare.bench.undo.redo()
+    bare.run_frames(5)
+    assert names() == ["high", "low", "middle"]
+
+
+def test_a_preset_that_a_shot_uses_is_not_deleted(bare: Bare, folder: Path) -> None:
+    path = folder / "sketch.toml"
+    text = SKETCH + '[[shot]]\nname = "top"\npreset = "high"\n'
+    path.write_text(text, encoding="utf-8")
+    bare.session.drafts.reload()
+    bare.run_frames(5)
+    bare.bench.actions.delete_preset("high")
+    assert any("shot top" in notice.text for notice in bare.bench.notices.items)
+    assert path.read_text(encoding="utf-8") == text
+
+
 def test_the_history_lists_every_step_and_goes_there(bare: Bare) -> None:
     for number in (0.1, 0.2, 0.3):
         bare.session.drafts.set("height.level", number)

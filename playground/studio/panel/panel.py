@@ -8,6 +8,7 @@ technique exports comes first, what is inside is folded.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
@@ -46,6 +47,7 @@ from playground.studio.inspect.panel import draw_spread
 from playground.studio.interface import TypedAhead
 from playground.studio.keyframes.panel import KeyframeList
 from playground.studio.keys import all_keys
+from playground.studio.language import tr
 from playground.studio.paint.panel import draw_paintbox
 from playground.studio.panel.parameter_list import Filter, PanelState, items_of, set_words, shown_values
 from playground.studio.panel.passes_panel import Sections
@@ -397,9 +399,35 @@ def _presets(sketch: Sketch, memory: PanelState, actions: Actions) -> None:
     with row("Preset", note, edited=bool(off), fixed=True):
         text = active.name if active else f"{last.name}, changed" if last else "choose"
         preset = choose("##preset", fitting_choice(text), sketch.presets, active, name=lambda p: p.name)
+        imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
+        _preset_order(sketch, actions)
     if preset is not None:
         memory.preset = preset.name
         actions.apply_preset(preset.name)
+
+
+def _preset_order(sketch: Sketch, actions: Actions) -> None:
+    """Draw the menu that moves and deletes presets."""
+    with menu("…###preset order", "preset order", tr("Move and delete presets")) as opened:
+        if not opened:
+            return
+        last = len(sketch.presets) - 1
+        wide = max(imgui.calc_text_size(preset.name).x for preset in sketch.presets)
+        start = imgui.get_cursor_pos_x()
+        for number, preset in enumerate(sketch.presets):
+            imgui.align_text_to_frame_padding()
+            imgui.text_unformatted(preset.name)
+            imgui.same_line(start + wide + 2 * imgui.get_style().item_spacing.x)
+            buttons(
+                (f"{tr('Up')}###up {number}", "", partial(actions.move_preset, preset.name, -1), number > 0),
+                (
+                    f"{tr('Down')}###down {number}",
+                    "",
+                    partial(actions.move_preset, preset.name, 1),
+                    number < last,
+                ),
+                (f"{tr('Delete')}###delete {number}", "", partial(actions.delete_preset, preset.name), True),
+            )
 
 
 def _differing(sketch: Sketch, preset: Preset) -> list[str]:
