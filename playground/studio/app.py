@@ -37,6 +37,8 @@ from playground.studio.code.editors import Opener
 from playground.studio.code.open_files import unsaved
 from playground.studio.code.panel import draw_code
 from playground.studio.compare.panel import below_bar, drag_line, paint_both
+from playground.studio.cost.panel import draw_readout
+from playground.studio.cost.readout import Readout
 from playground.studio.draw import Area, tooltip_waits
 from playground.studio.drops import Drops, opened_from
 from playground.studio.edits.autosave import QUIET, Autosave, memory_of
@@ -260,6 +262,7 @@ class Live:
         self.keys = PictureKeys(self.bench)
         session.engine.runner.inputs.is_live = True
         self.finite = FiniteWatch()
+        self.readout = Readout(session, time.perf_counter)
         host = Host(self.bench, autosave, self._remember, wake, lambda: window.theme)
         self.additions: list[Addition] = [m.open_addition(host) for m in rooms.modules("addition")]
         self.bench.additions = self.additions
@@ -382,6 +385,8 @@ class Live:
             return QUIET / 2
         if self.bench.notices.items or self.start_panel.waits:
             return 0.1
+        if self.readout.waits:
+            return 0.25
         if imgui.get_io().want_text_input:
             return 0.1
         return IDLE
@@ -496,7 +501,9 @@ class Live:
     def _picture(self, size: tuple[int, int]) -> moderngl.Texture | None:
         session = self.session
         draws, error = session.draws, session.error
+        began = time.perf_counter()
         picture = session.frame(size)
+        self.readout.take(time.perf_counter() - began)
         if session.draws != draws or session.error is not error:
             self._settling = _SETTLES  # the panel shows what the frame took; an error grows to its size
         return picture
@@ -535,6 +542,8 @@ class Live:
         draw("what is shown over the picture", lambda: draw_inspection(*view), None)
         self.guard.run("tracing", lambda: tracing.update(picture), None)
         self.guard.run("the texel for editors", self.live_texel.update, None)
+        corner = bench.interface, bench.inspection, look, above
+        draw("the frames a second", lambda: draw_readout(self.readout, *corner), None)
         draw("the pinned texel", lambda: draw_mark(tracing, look, area), None)
         draw("the trace", lambda: self.trace_panel.draw(tracing, look, above), None)
         draw("the notices", lambda: draw_notices(bench.notices, look, area), None)

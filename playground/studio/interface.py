@@ -39,6 +39,7 @@ class Preferences:
     language: str = ""  # "": the system's
     panes: dict[str, float] = field(default_factory=dict)  # what ``Panes`` remembers, by name
     used_keys: tuple[str, ...] = ()  # of those that the window hints at
+    shows_readout: bool = True  # frames a second in the picture's corner
     file: Path | None = None  # None: nowhere
 
     def step(self, by: int) -> None:
@@ -60,7 +61,7 @@ class Preferences:
             write_file(self.file, json.dumps({"format": FORMAT, **remembered}))
 
 
-_REMEMBERED = ("size", "is_light", "language", "panes", "used_keys")
+_REMEMBERED = ("size", "is_light", "language", "panes", "used_keys", "shows_readout")
 
 
 def remembered_preferences(folder: Path | None = None) -> Preferences:
@@ -80,7 +81,7 @@ def remembered_preferences(folder: Path | None = None) -> Preferences:
         return preferences
     if table.get("size") in SIZES:
         preferences.size = float(table["size"])
-    for name in ("is_light", "language"):
+    for name in ("is_light", "language", "shows_readout"):
         if isinstance(table.get(name), type(getattr(preferences, name))):
             setattr(preferences, name, table[name])
     panes = table.get("panes")

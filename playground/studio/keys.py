@@ -156,6 +156,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.f11, "F11", "fill the screen, or no longer", lambda b: b.window.toggle_full()),
     Key(_K.none, "?", _HELP, lambda b: b.interface.toggle_keymap(), letter="?", brief="keys"),
     Key(_K.f1, "F1", _HELP, lambda b: b.interface.toggle_keymap()),
+    Key(_K.f4, "F4", "frames a second in the corner, or no longer", lambda b: _toggle_readout(b)),
     Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
     Key(_K.e, "E", "edit the file of the current error", lambda b: b.files.open_current(b.problems)),
     Key(_K.z, "Ctrl+Z", "undo", lambda b: b.undo.undo(), ctrl=True),
@@ -170,6 +171,11 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.escape, "Esc", "close open panels, one at a time", close_one),
     Key(_K.q, "Ctrl+Q", "quit", lambda b: b.window.quit(), ctrl=True, brief="quit"),
 )
+
+
+def _toggle_readout(bench: Workbench) -> None:
+    preferences = bench.interface.preferences
+    preferences.choose(shows_readout=not preferences.shows_readout)
 
 
 _ONCE = (_K.s, _K.v)

@@ -19,8 +19,10 @@ from playground.engine.execution import FrameRecord
 from playground.errors import ContextError
 from playground.studio.bench import Workbench
 from playground.studio.cost.costs import Record, RunReasons
+from playground.studio.cost.panel import draw_readout
+from playground.studio.cost.readout import Readout
 from playground.studio.graph.graph import Thumbnails
-from playground.studio.interface import WindowControls
+from playground.studio.interface import WindowControls, remembered_preferences
 from playground.studio.picture import disk_caching as module
 from playground.studio.picture.disk_caching import SessionCaching
 from playground.studio.problems.non_finite import REST, FiniteWatch
@@ -408,3 +410,54 @@ def test_cached_terrain_is_identified_by_itself_not_its_texture(harness: Harness
     assert not thumbnails.is_current(name)
     thumbnails.release()
     again.release()
+
+
+# ── the corner ───────────────────────────────────────────────────────────────
+
+
+def test_the_corner_counts_the_pictures_of_the_last_second(bare: Bare) -> None:
+    now = 0.0
+    session = bare.session
+    readout = Readout(session, lambda: now)
+    assert "fps" not in readout.text()
+    for number in range(8):
+        now = number / 10
+        session.view.revision += 1
+        session.frame((48, 32))
+        readout.take(0.002)
+    readout.take(0.5)
+    assert (readout.frames, readout.waits) == (8, True)
+    assert readout.text().startswith("8 fps") and "48 × 32" in readout.text()
+    measured = sum(session.engine.record.times.values()) if session.engine.info.software else 2.0
+    assert readout.milliseconds == pytest.approx(measured)
+    now = 1.65
+    readout.take(0.002)
+    assert readout.frames == 1
+    now = 3.0
+    readout.take(0.002)
+    assert (readout.frames, readout.waits) == (0, False)
+    assert "at rest" in readout.text()
+
+
+def test_a_click_on_the_corner_opens_the_costs_and_its_key_hides_it(bare: Bare, tmp_path: Path) -> None:
+    readout = Readout(bare.session, lambda: bare.time)
+    preferences = bare.bench.interface.preferences
+    preferences.file = tmp_path / "interface.json"
+    draw = bare.draw
+
+    def draw_with_corner() -> None:
+        draw()
+        bench = bare.bench
+        draw_readout(readout, bench.interface, bench.inspection, bare.theme, (330.0, 0.0, 950.0, 720.0))
+
+    bare.draw = draw_with_corner  # type: ignore[method-assign]
+    bare.bench.interface.panel_shown = False
+    bare.click("readout")
+    bare.run_frames(3)
+    assert bare.bench.inspection.costs_shown and bare.bench.interface.panel_shown
+    assert "readout" in bare.places
+    bare.key(imgui.Key.f4)
+    bare.places.clear()
+    bare.run_frames(2)
+    assert "readout" not in bare.places
+    assert not remembered_preferences(tmp_path).shows_readout

@@ -16,22 +16,72 @@ from playground.sketch.model import Sketch
 from playground.sketch.variants import any_variants
 from playground.studio import theme
 from playground.studio.cost.costs import Record
-from playground.studio.draw import fitting, header, table
+from playground.studio.cost.readout import Readout
+from playground.studio.draw import OVERLAY, Area, explain, fitting, header, table, window
 from playground.studio.inspect.inspection import Inspection
+from playground.studio.interface import Interface
+from playground.studio.language import tr
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 from playground.studio.widgets import PLOT_COLOURS, plot, plot_line
 
+_READOUT = OVERLAY | imgui.WindowFlags_.no_bring_to_front_on_focus
 _MAX_ROWS = 6  # passes with a line of their own
 _HIGH = 110.0  # of a plot
 _TABLE = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
+
+
+def draw_readout(
+    readout: Readout, interface: Interface, inspection: Inspection, look: Theme, area: Area
+) -> None:
+    """Draw the corner of the picture; a click on it opens the costs, its menu hides it."""
+    if not interface.preferences.shows_readout:
+        return
+    text = readout.text()
+    if not text:
+        return
+    with look.font(look.text, theme.SMALL):
+        size, pad = imgui.calc_text_size(text), 5 * look.scale
+        wide, high = size.x + 2 * pad, size.y + 2 * pad
+        if wide > area[2] or high > area[3]:
+            return
+        margin = 8 * look.scale
+        imgui.set_next_window_pos(
+            ImVec2(area[0] + max(area[2] - wide - margin, 0.0), area[1] + max(area[3] - high - margin, 0.0))
+        )
+        sizes: dict[imgui.StyleVar_, float | ImVec2] = {
+            imgui.StyleVar_.window_padding: ImVec2(0, 0),
+            imgui.StyleVar_.window_border_size: 0.0,
+        }
+        ground = theme.colour(theme.palette.ground, 0.8)
+        with window("readout", _READOUT, ground=ground, rounding=5 * look.scale, sizes=sizes):
+            corner = imgui.get_cursor_screen_pos()
+            if imgui.invisible_button("readout", ImVec2(wide, high)):
+                interface.panel_shown, inspection.costs_asked = True, True
+            ink = theme.palette.ink if imgui.is_item_hovered() else theme.palette.dim
+            place = ImVec2(corner.x + pad, corner.y + pad)
+            imgui.get_window_draw_list().add_text(place, theme.packed(ink), text)
+            if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+                note = tr(
+                    "Pictures of the last second, pixels, time of the last picture; a click shows its costs"
+                )
+                explain(text, f"{note} (F4)")
+            if imgui.begin_popup_context_item("readout menu"):
+                if imgui.menu_item_simple(f"{tr('Hide')}###hide readout", "F4"):
+                    interface.preferences.choose(shows_readout=False)
+                imgui.end_popup()
 
 
 def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: Theme) -> None:
     """Draw the plots, then the table of what ran, how often and how long."""
     engine, record = session.engine, inspection.record
     imgui.spacing()
+    if inspection.costs_asked:
+        imgui.set_next_item_open(True)
     opened = header("Cost###costs", look)
+    if inspection.costs_asked:
+        inspection.costs_asked = False
+        imgui.set_scroll_here_y(0.0)
     if not opened:
         return
     inspection.costs_shown = True

@@ -22,6 +22,7 @@ class Inspection:
     record: Record = field(default_factory=Record)
     reasons: RunReasons = field(default_factory=RunReasons)
     costs_shown: bool = False  # the costs are on the screen in this frame
+    costs_asked: bool = False  # the panel is to open the costs, and to scroll to them
     counter: Counter = field(init=False)
     compare: Compare = field(init=False)
     graph: Graph = field(init=False)

@@ -94,6 +94,8 @@ class Panel:
         footer = _footer_lines(bench.session.orbits)
         bar = imgui.WindowFlags_.always_vertical_scrollbar if sketch is not None else 0
         imgui.begin_child("sections", ImVec2(0, -_footer_height(footer, look)), 0, bar)
+        if bench.inspection.costs_asked:
+            self.memory.filter = Filter()
         if sketch is not None:
             if not self.memory.filter:
                 _map(bench.session, bench.inspection, look)

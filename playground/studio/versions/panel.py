@@ -227,7 +227,7 @@ def _next(label: str) -> None:
 
 def _draw_star(draw: imgui.ImDrawList, middle: ImVec2, radius: float) -> None:
     """Draw a star of five points, for which the font has no letter."""
-    points = []
+    points: list[ImVec2 | tuple[float, float] | list[float]] = []
     for number in range(10):
         angle, away = math.pi * number / 5, radius if number % 2 == 0 else 0.4 * radius
         points.append(ImVec2(middle.x + away * math.sin(angle), middle.y - away * math.cos(angle)))
