@@ -17,7 +17,7 @@ from playground.sketch.variants import any_variants
 from playground.studio import theme
 from playground.studio.cost.costs import Record
 from playground.studio.cost.readout import Readout
-from playground.studio.draw import OVERLAY, Area, explain, fitting, header, table, window
+from playground.studio.draw import OVERLAY, Area, explain, fitting, header, styled, table, window
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.interface import Interface
 from playground.studio.language import tr
@@ -53,6 +53,7 @@ def draw_readout(
             imgui.StyleVar_.window_padding: ImVec2(0, 0),
             imgui.StyleVar_.window_border_size: 0.0,
         }
+        padding = ImVec2(imgui.get_style().window_padding.x, imgui.get_style().window_padding.y)
         ground = theme.colour(theme.palette.ground, 0.8)
         with window("readout", _READOUT, ground=ground, rounding=5 * look.scale, sizes=sizes):
             corner = imgui.get_cursor_screen_pos()
@@ -61,15 +62,14 @@ def draw_readout(
             ink = theme.palette.ink if imgui.is_item_hovered() else theme.palette.dim
             place = ImVec2(corner.x + pad, corner.y + pad)
             imgui.get_window_draw_list().add_text(place, theme.packed(ink), text)
-            if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
-                note = tr(
-                    "Pictures of the last second, pixels, time of the last picture; a click shows its costs"
-                )
-                explain(text, f"{note} (F4)")
-            if imgui.begin_popup_context_item("readout menu"):
-                if imgui.menu_item_simple(f"{tr('Hide')}###hide readout", "F4"):
-                    interface.preferences.choose(shows_readout=False)
-                imgui.end_popup()
+            with styled(sizes={imgui.StyleVar_.window_padding: padding}):
+                if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+                    what = tr("Pictures of the last second, pixels, time of the last picture")
+                    explain(what, tr("A click shows what costs it; F4 hides this"))
+                if imgui.begin_popup_context_item("readout menu"):
+                    if imgui.menu_item_simple(f"{tr('Hide')}###hide readout", "F4"):
+                        interface.preferences.choose(shows_readout=False)
+                    imgui.end_popup()
 
 
 def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: Theme) -> None:

@@ -33,7 +33,8 @@ class Readout:
             self._times.append(now)
             engine = session.engine
             is_timed = engine.info.software or engine.options.profiling
-            self.milliseconds = sum(engine.record.times.values()) if is_timed else seconds * 1e3
+            timed = sum(engine.record.times.values()) if is_timed else 0.0
+            self.milliseconds = timed or seconds * 1e3
         while self._times and self._times[0] <= now - _SPAN:
             self._times.popleft()
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 _CAPTION = 22.0  # [units of scale 1] below a picture
-_LEAST, _MOST = 54.0, 108.0  # that a picture is high
+_LEAST, _MOST = 54.0, 130.0  # that a picture is high
 _NAME_LETTERS = 10  # that the field for a name is wide
 
 
