@@ -31,6 +31,7 @@ from playground.studio.draw import (
 )
 from playground.studio.interface import Interface, resize
 from playground.studio.paint.brush import TOOLS, Tool
+from playground.studio.panes import NARROW
 from playground.studio.theme import Theme
 
 
@@ -88,6 +89,8 @@ def _open(bench: Workbench) -> Iterator[Layer]:
         yield "brush", bench.painting.toggle
     if inspection.compare.on:
         yield "A/B", inspection.compare.toggle
+    if bench.versions.is_looking:
+        yield "version", bench.versions.leave
     if bench.window.is_full():
         yield "full screen", bench.window.toggle_full
     for addition in bench.additions:
@@ -157,6 +160,9 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.none, "?", _HELP, lambda b: b.interface.toggle_keymap(), letter="?", brief="keys"),
     Key(_K.f1, "F1", _HELP, lambda b: b.interface.toggle_keymap()),
     Key(_K.f4, "F4", "frames a second in the corner, or no longer", lambda b: _toggle_readout(b)),
+    Key(_K.f6, "F6, Shift+F6", "look at the version before, after", lambda b: _look(b)),
+    Key(_K.f6, "Ctrl+F6", "go back to the version that is looked at", lambda b: _go_back(b), ctrl=True),
+    Key(_K.v, "V", "the versions, or no longer", lambda b: _toggle_versions(b)),
     Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
     Key(_K.e, "E", "edit the file of the current error", lambda b: b.files.open_current(b.problems)),
     Key(_K.z, "Ctrl+Z", "undo", lambda b: b.undo.undo(), ctrl=True),
@@ -171,6 +177,22 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.escape, "Esc", "close open panels, one at a time", close_one),
     Key(_K.q, "Ctrl+Q", "quit", lambda b: b.window.quit(), ctrl=True, brief="quit"),
 )
+
+
+def _look(bench: Workbench) -> None:
+    bench.panes.show_strip("versions")
+    bench.versions.step(1 if imgui.get_io().key_shift else -1)
+
+
+def _go_back(bench: Workbench) -> None:
+    if bench.versions.looked is not None:
+        bench.versions.go_back(bench.versions.looked)
+
+
+def _toggle_versions(bench: Workbench) -> None:
+    narrow = imgui.get_main_viewport().size.x < NARROW * imgui.get_style().font_scale_dpi
+    shown = bench.panes.is_open("strip", narrow=narrow)
+    bench.panes.show_strip("versions", shown=not shown)
 
 
 def _toggle_readout(bench: Workbench) -> None:

@@ -193,6 +193,18 @@ def test_looking_writes_nothing_and_ends_where_it_began(harness: Harness, versio
     assert len(harness.bench.undo.history.steps) == steps
 
 
+def test_steps_go_through_the_versions_and_end_in_the_present(harness: Harness, versions: Versions) -> None:
+    for before, after in (("0.25", "0.5"), ("0.5", "0.75")):
+        save(harness, f"level = {before}", f"level = {after}")
+    seen = []
+    for by in (-1, -1, -1, 1, 1, 1):
+        versions.step(by)
+        ask(harness, versions)
+        seen.append((harness.level, versions.is_looking))
+    assert seen == [(0.5, True), (0.25, True), (0.25, True), (0.5, True), (0.75, True), (0.75, False)]
+    assert "no version before" in harness.messages
+
+
 def test_what_is_edited_while_looking_is_kept_as_another(harness: Harness, versions: Versions) -> None:
     save(harness, "level = 0.25", "level = 0.5")
     versions.look(versions.items[0])

@@ -127,16 +127,12 @@ class VersionsPanel:
                 act(chosen)
         _next(tr("To the present"))
         if button(f"{tr('To the present')}###present", tr("End looking: what is worked on is shown again")):
-            self._to_present()
+            self.versions.leave()
         if versions.is_looking:
             text = tr("only looked at")
             _next(text)
             imgui.text_colored(theme.colour(theme.palette.warm), text)
             imgui.set_item_tooltip(tr("The files are as they were; nothing is written"))
-
-    def _to_present(self) -> None:
-        self.versions.leave()
-        self.versions.selected = ""
 
     # ── one version ──────────────────────────────────────────────────────────
 
@@ -178,10 +174,9 @@ class VersionsPanel:
             draw.add_text(ImVec2(left, top), theme.packed(theme.palette.ink), text)
         if hovered and imgui.is_mouse_double_clicked(0):
             versions.go_back(version)
-            versions.selected = ""
         elif clicked and imgui.get_mouse_clicked_count(0) <= 1:
             if version.key == versions.selected:
-                self._to_present()
+                self.versions.leave()
             else:
                 versions.look(version)
         self._draw_menu(version)

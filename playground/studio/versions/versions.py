@@ -196,6 +196,21 @@ class Versions:
         """Show a version as a draft, once it has proved good; nothing is written."""
         self._ask(version, self._show)
 
+    def step(self, by: int) -> None:
+        """Look at the version before (-1) or after (1) what is shown; after the last is the present."""
+        items = self.items
+        keys = [version.key for version in items]
+        if self.selected in keys:
+            at = keys.index(self.selected)
+        else:
+            at = len(keys) - (bool(keys) and keys[-1] == self._current)
+        if at + by >= len(keys):
+            self.leave()
+        elif at + by < 0:
+            self._say(tr("there is no version before this one"))
+        else:
+            self.look(items[at + by])
+
     def compare(self, version: Version) -> None:
         """Compare what is shown with a version: it becomes A."""
         steps = dict(version.state.steps)
@@ -203,7 +218,7 @@ class Versions:
 
     def leave(self) -> None:
         """Show again what looking took the place of."""
-        self._asked = None
+        self._asked, self.selected = None, ""
         if self._before is None:
             return
         (draft, steps), session = self._before, self.session
