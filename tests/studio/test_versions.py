@@ -10,12 +10,15 @@ import numpy as np
 import pytest
 
 from playground.errors import DataError
+from playground.sketch.model import Camera
+from playground.studio.bench import Workbench
 from playground.studio.edits.edits import Edits
+from playground.studio.interface import WindowControls
 from playground.studio.versions import store as store_module
 from playground.studio.versions.store import State, VersionStore
 from playground.studio.versions.versions import Versions
 
-from .session_desk import BAD, GOOD, KERNEL, LEVEL, Harness
+from .session_desk import BAD, GOOD, KERNEL, LEVEL, Harness, OpenSession
 
 PIXELS = np.full((90, 160, 3), 128, np.uint8)
 
@@ -227,6 +230,20 @@ def test_a_save_ends_looking(harness: Harness, versions: Versions) -> None:
     assert harness.level == 0.625
 
 
+def test_values_that_looking_hid_are_there_again_after_a_save(harness: Harness, versions: Versions) -> None:
+    save(harness, "level = 0.25", "level = 0.5")
+    harness.drafts.set(LEVEL, 0.75)
+    harness.frame()
+    steps = len(harness.bench.undo.history.steps)
+    versions.look(versions.items[0])
+    ask(harness, versions)
+    assert harness.level == 0.25
+    save(harness, "0.5 *", "0.25 *")
+    harness.frame()
+    assert (harness.level, versions.is_looking) == (0.75, False)
+    assert len(harness.bench.undo.history.steps) == steps
+
+
 def test_a_version_that_does_not_draw_is_not_shown(harness: Harness, versions: Versions) -> None:
     save(harness, "level = 0.25", "level = 0.5")
     versions.look(versions.items[0])
@@ -357,3 +374,22 @@ def test_a_version_becomes_a_sketch_of_its_own(harness: Harness, versions: Versi
     assert harness.level == 0.25
     versions.update(idle=True)
     assert len(versions.items) == 1, "it has versions of its own"
+
+
+def test_an_elevation_file_alone_has_versions_of_its_values(
+    tmp_path: Path, open_session: OpenSession
+) -> None:
+    np.save(tmp_path / "hills.npy", np.random.default_rng(1).random((9, 9), np.float32))
+    session = open_session(tmp_path / "hills.npy")
+    session.frame((32, 24))
+    session.read()  # in full
+    bench = Workbench(session, WindowControls(lambda: None), folder=tmp_path)
+    versions = Versions(bench.actions, bench.inspection.compare, folder=tmp_path / "kept")
+    versions.update(idle=True)
+    (version,) = versions.items
+    assert version.texts == ()
+    session.drafts.set_camera(Camera(azimuth=10.0))
+    session.frame((32, 24))
+    assert versions.go_back(version)
+    assert session.shown is not None and session.shown.edits.camera is None
+    assert not versions.as_new_sketch(version)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import moderngl
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 
+from playground.errors import PlaygroundError
 from playground.studio import theme
 from playground.studio.draw import button, explain, fitting, pushed_id
 from playground.studio.interface import Tab
@@ -237,7 +239,8 @@ def _note(version: Version) -> str:
     """Return what a version's tooltip says."""
     from datetime import datetime
 
-    edits = version.state.edits
     lines = [datetime.fromtimestamp(version.at).strftime("%Y-%m-%d %H:%M:%S")] if version.name else []
-    lines.append(tr("{files} texts, {values} values set", files=len(version.texts), values=len(edits.values)))
+    with suppress(PlaygroundError):
+        count = len(version.state.edits.values)
+        lines.append(tr("{files} texts, {values} values set", files=len(version.texts), values=count))
     return "\n".join(lines)

@@ -17,7 +17,9 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,8 +67,33 @@ class Version:
     at: float  # [s since the epoch] when it was kept last
     main: str  # the sketch's file, relative to its folder
     texts: tuple[tuple[str, str], ...]  # file relative to the sketch's folder → hash of what it holds
-    state: State = field(default_factory=State)
+    written: str = "{}"  # its state as JSON: of hundreds that are listed few are asked for it
     name: str = ""  # one that has a name is kept until that is taken away
+
+    @cached_property
+    def state(self) -> State:
+        """What it holds besides its texts; raises ``DataError`` where that cannot be read."""
+        try:
+            state: State = typed(State, read_json(self.written))
+        except (ValueError, TypeError, KeyError, AttributeError, ArithmeticError) as error:
+            raise DataError(f"the values of this version cannot be read: {error}") from None
+        return state
+
+
+def _version(row: dict[str, Any]) -> Version:
+    """Return a row of the list; raise ``KeyError``, ``TypeError`` or ``ValueError`` for what is none."""
+    texts = tuple((name, digest) for name, digest in row["texts"])
+    version = Version(row["key"], float(row["at"]), row["main"], texts, row["written"], row["name"])
+    words = [
+        version.key,
+        version.main,
+        version.written,
+        version.name,
+        *(word for pair in texts for word in pair),
+    ]
+    if not all(isinstance(word, str) for word in words):
+        raise TypeError("a version in it is none")
+    return version
 
 
 class VersionStore:
@@ -93,15 +120,17 @@ class VersionStore:
 
     def versions(self) -> tuple[Version, ...]:
         """Return all versions, the oldest first; those that another window kept, too."""
-        try:
-            status = self._list.stat()
-        except OSError:
-            self._read = None, ()
-            return ()
-        signature = status.st_ino, status.st_mtime_ns, status.st_size
+        signature = self._signature()
         if self._read[0] != signature:
             self._read = signature, self._versions()
         return self._read[1]
+
+    def _signature(self) -> tuple[int, int, int] | None:
+        try:
+            status = self._list.stat()
+        except OSError:
+            return None
+        return status.st_ino, status.st_mtime_ns, status.st_size
 
     def _versions(self) -> tuple[Version, ...]:
         try:
@@ -110,8 +139,7 @@ class VersionStore:
             table = read_json(read_regular(self._list).decode())
             if table["format"] != FORMAT:
                 raise ValueError(f"it has format {table['format']}, and this version knows {FORMAT}")
-            rows: tuple[Version, ...] = typed(tuple[Version, ...], table["versions"])
-            return rows
+            return tuple(map(_version, table["versions"]))
         except FileNotFoundError:
             return ()
         except (OSError, ValueError, TypeError, KeyError, AttributeError, ArithmeticError) as error:
@@ -172,7 +200,8 @@ class VersionStore:
         if sum(map(len, texts.values())) > self._most_bytes:
             raise DataError(f"its texts are larger than {self._most_bytes / 2**20:g} MiB", file=self.sketch)
         hashes = tuple((file, hash_of_text(data)) for file, data in sorted(texts.items()))
-        version = Version(key_of(main, hashes, state), time.time() if at is None else at, main, hashes, state)
+        at = time.time() if at is None else at
+        version = Version(key_of(main, hashes, state), at, main, hashes, _written(state))
         with self._locked():
             rows = list(self.versions())
             before = next((row for row in rows if row.key == version.key), None)
@@ -219,9 +248,10 @@ class VersionStore:
                 break
             rows.remove(oldest)
         make_folder(self.folder)
-        table = {"format": FORMAT, "sketch": str(self.sketch), "versions": [asdict(row) for row in rows]}
+        table = {"format": FORMAT, "sketch": str(self.sketch), "versions": [_row(row) for row in rows]}
         text = json.dumps(table, ensure_ascii=False, separators=(",", ":"))
         write_file(self._list, text.encode("utf-8", "surrogatepass"))
+        self._read = self._signature(), tuple(rows)
         used = {name for row in rows for name in _files_of(row)}
         for name in sizes.keys() - used:
             with suppress(OSError):
@@ -264,8 +294,17 @@ class VersionStore:
 
 def key_of(main: str, hashes: Sequence[tuple[str, str]], state: State) -> str:
     """Return what tells a version from every other."""
-    table = json.dumps([main, list(hashes), asdict(state)], sort_keys=True)
+    table = json.dumps([main, list(hashes), _written(state)])
     return hashlib.blake2b(table.encode("utf-8", "surrogatepass"), digest_size=12).hexdigest()
+
+
+def _written(state: State) -> str:
+    return json.dumps(asdict(state), sort_keys=True, separators=(",", ":"))
+
+
+def _row(version: Version) -> dict[str, object]:
+    names = ("key", "at", "main", "texts", "written", "name")
+    return {name: getattr(version, name) for name in names}
 
 
 def hash_of_text(data: bytes) -> str:

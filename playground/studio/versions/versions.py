@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.allowed_files import reading_unsaved, signature
+from playground.allowed_files import is_elevation, reading_unsaved, signature
 from playground.errors import DataError, PlaygroundError
 from playground.files import new_name, write_file
 from playground.paths import GLSL
@@ -26,7 +26,7 @@ from playground.sketch.save import save_copy
 from playground.sketch.techniques import Techniques
 from playground.studio.actions import Actions
 from playground.studio.compare.compare import Compare
-from playground.studio.edits.edits import Draft, file_values, first_draft
+from playground.studio.edits.edits import Draft, file_values, first_draft, reload_draft
 from playground.studio.edits.history import FILES, Key, state_of
 from playground.studio.language import tr
 from playground.studio.reload.stages import ReloadStage
@@ -114,7 +114,7 @@ class Versions:
         if self._looked_draft is not None and (
             session.shown is None or session.shown.file is not self._looked_draft.file
         ):
-            self._forget_look()  # a save came meanwhile
+            self._end_look()  # a save came meanwhile
         shown = session.shown
         if not idle or shown is None or shown.file is self._kept_of or self.is_looking:
             return
@@ -213,8 +213,7 @@ class Versions:
 
     def compare(self, version: Version) -> None:
         """Compare what is shown with a version: it becomes A."""
-        steps = dict(version.state.steps)
-        self._ask(version, lambda draft: self._compare.keep_state(draft, steps))
+        self._ask(version, lambda draft: self._compare.keep_state(draft, dict(version.state.steps)))
 
     def leave(self) -> None:
         """Show again what looking took the place of."""
@@ -272,11 +271,28 @@ class Versions:
         self.session.redraw()
         self.actions.undo.settle()  # no step: nothing of it is the user's work
 
+    def _end_look(self) -> None:
+        """Go on with what was saved meanwhile, and with the edits that looking took the place of."""
+        before, session = self._before, self.session
+        self._keep_edited()
+        self._forget_look()
+        self.selected = ""
+        if before is None or session.shown is None or session.drafts.opening:
+            return
+        draft, notes = reload_draft(before[0], session.shown.file)
+        session.notes.extend(notes)
+        session.drafts.restore(draft.edits)
+        for path, step in before[1].items():
+            session.stop_at(path, step)
+        self.actions.undo.settle()
+
     def _keep_edited(self) -> None:
         """Keep what was edited over the version that is looked at, as a version of its own."""
         looked, shown, before = self.looked, self.session.shown, self._looked_draft
         if looked is None or shown is None or before is None or shown.edits == before.edits:
             return
+        if shown.file is not before.file:
+            return  # what was saved since has taken them in
         with self._reported():
             texts, state = self._store.texts(looked), _state_of(shown, self.session.view.steps)
             self._store.keep(looked.main, texts, state, pixels=self._pixels())
@@ -354,6 +370,9 @@ class Versions:
         self.leave()
         with self._reported():
             texts = self._store.texts(version)
+            if version.main not in texts:
+                self._say(tr("an elevation file has no text; Save makes a sketch of it"))
+                return False
             if Path(version.main).suffix != ".toml":
                 with new_name(self.actions.folder / Path(version.main).name) as path:
                     write_file(path, texts[version.main])
@@ -411,16 +430,14 @@ class Versions:
 
 
 def own_texts(sketch: Sketch) -> dict[str, Path]:
-    """Return a sketch's own texts, by their names relative to its folder; what ships is none of them.
+    """Return a sketch's own texts, by their names relative to its folder; none of what ships.
 
-    Of a sketch that ships itself they are its file and those beside it.
+    Of a sketch that ships itself they are its file and those beside it. An elevation file is no text.
     """
     folder, main = Path(sketch.folder), Path(sketch.file)
     files = [main, *(Path(name) for name in sketch.files)]
     own = [path for path in files if path.is_relative_to(folder) and (folder != GLSL or path == main)]
-    return {_relative(path, folder): path for path in own if not _is_part(path)} | {
-        _relative(main, folder): main
-    }
+    return {_relative(path, folder): path for path in own if _is_text(path)}
 
 
 def title_of(version: Version) -> str:
@@ -432,9 +449,9 @@ def title_of(version: Version) -> str:
     return version.name or at.strftime("%H:%M:%S" if is_today else "%Y-%m-%d %H:%M")
 
 
-def _is_part(path: Path) -> bool:
-    """Return whether a name is no file's own, as that of a kernel inside another text."""
-    return not path.suffix or not path.is_file()
+def _is_text(path: Path) -> bool:
+    """Return whether a name is that of a text file: a kernel inside another text has none of its own."""
+    return path.is_file() and not is_elevation(path)
 
 
 def _relative(path: Path, folder: Path) -> str:
