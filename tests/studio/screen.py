@@ -16,6 +16,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from playground.paths import NAME
+
 from ..sketch_texts import passes
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -86,6 +88,14 @@ class Screen:
         """End the server."""
         self.server.terminate()
         self.server.wait(10)
+
+
+def close_panes(folder: Path) -> None:
+    """Have a program that keeps its state in a folder begin with the picture alone beside its panel."""
+    state = folder / "state" / NAME
+    state.mkdir(parents=True)
+    panes = {"code": 0, "strip": 0}
+    (state / "interface.json").write_text(json.dumps({"format": 1, "panes": panes}), encoding="utf-8")
 
 
 class Program:
