@@ -37,6 +37,7 @@ class VersionsPanel:
         self._textures: dict[str, moderngl.Texture | None] = {}  # by key
         self._typed = ""
         self._typed_for = ""  # the version that the name is of
+        self._is_double = False  # the mouse was pressed the second time
         self._count = -1  # of the versions that were drawn last
 
     @property
@@ -47,6 +48,8 @@ class VersionsPanel:
     def draw(self, look: Theme) -> None:
         """Draw the tab's contents, and do what is clicked on."""
         versions, items = self.versions, self.versions.items
+        if imgui.is_mouse_clicked(0):
+            self._is_double = imgui.is_mouse_double_clicked(0)  # its release is no click of its own
         self._draw_buttons(versions.chosen, look)
         if not items:
             with_room = imgui.get_content_region_avail().x
@@ -176,7 +179,7 @@ class VersionsPanel:
             draw.add_text(ImVec2(left, top), theme.packed(theme.palette.ink), text)
         if hovered and imgui.is_mouse_double_clicked(0):
             versions.go_back(version)
-        elif clicked and imgui.get_mouse_clicked_count(0) <= 1:
+        elif clicked and not (self._is_double and imgui.is_mouse_released(0)):
             if version.key == versions.selected:
                 self.versions.leave()
             else:
