@@ -75,10 +75,10 @@ class EyeHeight:
     def _over(self, plan: Plan, position: tuple[float, float], height: float) -> Camera | None:
         """Return a camera over a height that is known at a place; None where the plan's own eye may stay."""
         self.raised_by = 0.0
-        if plan.terrain.relief is None or _place_of(plan) != position:
+        if plan.shown_relief is None or _place_of(plan) != position:
             return None
         x, y, z = plan.eye.position
-        lowest = height * plan.terrain.relief + CLEARANCE * plan.eye.distance
+        lowest = height * plan.shown_relief + CLEARANCE * plan.eye.distance
         if not z < lowest:  # or no number
             return None
         self.raised_by = lowest - z

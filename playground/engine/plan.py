@@ -42,6 +42,7 @@ class PlanRequest:
     interpolated: bool | None = None
     largest: int = MAX_SIDE
     canonical: str = ""  # path of a leaf that no fast variant replaces, nor a technique around it
+    exaggeration: float = 1.0  # how many times higher than it is the terrain is shown
 
     @property
     def fills(self) -> bool:
@@ -147,6 +148,13 @@ class Plan:
     steps: Mapping[str, int] = field(default_factory=dict)
     interpolated: bool = False  # what stopped passes have not reached is filled
     lacking: tuple[str, ...] = ()  # a message for each technique that does without its fast variant
+    exaggeration: float = 1.0  # how many times higher than it is the terrain is shown
+
+    @property
+    def shown_relief(self) -> float | None:
+        """Metres from height 0 to 1 in the picture; in the data it is the terrain's."""
+        relief = self.terrain.relief
+        return None if relief is None else relief * self.exaggeration
 
     def walk(self) -> list[Step]:
         """Return every step, those inside loops included."""

@@ -67,7 +67,8 @@ def planned(sketch: Sketch, request: PlanRequest) -> Plan:
     """Return what ``make_plan`` does, made of the last plan of the same graph as far as that still holds."""
     request = _checked(sketch, request)
     variants, steps = (*request.variants, request.canonical), tuple(request.steps.items())
-    asked = request.frame_size, variants, steps, request.ref, request.fills, _varies(sketch)
+    shown = request.fills, request.exaggeration
+    asked = request.frame_size, variants, steps, request.ref, *shown, _varies(sketch)
     key = (planned, id(sketch.graph), sketch.folder, sketch.plain, sketch.terrain, asked)
     return PLANS.put(key, _made(sketch, request, PLANS.get(key)), 1, sketch.graph)  # type: ignore[no-any-return]
 
@@ -273,6 +274,7 @@ class Planning:
                 own=sizes.own,
             ),
             steps=request.steps,
+            exaggeration=request.exaggeration,
             interpolated=request.fills,
             lacking=(*lacking, *refused.values(), *(str(o) for o in self.flat.shape.omitted if o.is_news)),
         )
@@ -298,7 +300,8 @@ class Planning:
     def _eye(self) -> Eye:
         extent, relief = self.terrain.extent, self.terrain.relief
         assert extent is not None and relief is not None
-        return look(self.sketch.camera, extent, relief, self.request.frame_size)
+        shown_relief = relief * self.request.exaggeration
+        return look(self.sketch.camera, extent, shown_relief, self.request.frame_size)
 
     def plan_node(self, node: Node) -> PlanNode:
         """Plan a pass or a loop."""

@@ -177,7 +177,9 @@ class Renderer:
         opened_sketch = opened(sketch)
         samples = 0 if in_parts else min(opened_sketch.picture.samples, self._info.max_samples)
         kinds = self.plain_forms.kinds if samples == 1 else self.plain_forms.kinds_without_draws
-        request = PlanRequest(size, time, kinds, steps or {}, ref, interpolated, largest, canonical)
+        exaggeration = self.runner.exaggeration
+        factor = exaggeration.factor if exaggeration is not None else 1.0
+        request = PlanRequest(size, time, kinds, steps or {}, ref, interpolated, largest, canonical, factor)
         return planned(opened_sketch, request)
 
     def draw_window(

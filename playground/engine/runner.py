@@ -17,6 +17,7 @@ from playground.engine.camera import unit_vector
 from playground.engine.compute_variant import ComputeVariants
 from playground.engine.context import ContextInfo
 from playground.engine.draws import Draws
+from playground.engine.exaggeration import Exaggeration
 from playground.engine.kernels import Kernels, usual_of
 from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextures, channels_of
 from playground.engine.plan import LoopIteration, Plan, Step, error_at
@@ -69,6 +70,7 @@ class Runner:
         self.hover = (0.0, 0.0)  # pixels from the lower left, pressed or not
         self.drag = (0.0, 0.0, 0.0, 0.0)  # as ShaderToy's iMouse
         self.pressed: frozenset[str] = frozenset()  # paths of the buttons that are pressed in this frame
+        self.exaggeration: Exaggeration | None = None  # of what a window shows
         self.inputs = LiveInputs()
         self.delta = 1 / 60  # [s] since the last one
         self.date = (1970.0, 0.0, 1.0, 0.0)  # year, month from 0, day, seconds
@@ -135,6 +137,9 @@ class Runner:
                 uniforms[name] = frame / FRAME_RATE
             elif name in self._given:
                 uniforms[name] = self._given[name]
+        if self.exaggeration is not None:
+            replaced = self.exaggeration.given(kernel, step.values, self._given)
+            uniforms |= {name: value for name, value in replaced.items() if name in uniforms}
         return uniforms
 
     def _spacing(self, step: Step) -> tuple[float, float]:

@@ -31,6 +31,7 @@ from playground.sketch.traits import has_moving_counts, is_animated, traits_of
 from playground.studio.clock import Clock
 from playground.studio.edits.drafts import Drafts
 from playground.studio.edits.edits import Draft, StoredEdits
+from playground.studio.land.exaggerated import exaggeration
 from playground.studio.picture.shown_picture import CatchUp, ShownPicture
 from playground.studio.picture.view import View, fitted, in_view, steps_of_repeats
 from playground.studio.reload.dependencies import DataFiles
@@ -126,7 +127,9 @@ class Session:
     @property
     def orbits(self) -> bool:
         """Whether the camera moves anything in the picture."""
-        return self.sketch is not None and self.view.map is None and traits_of(self.sketch).camera
+        if self.sketch is None or self.view.map is not None:
+            return False
+        return self.view.look is not None or traits_of(self.sketch).camera
 
     @property
     def refs(self) -> list[str]:
@@ -303,6 +306,18 @@ class Session:
         self.view.show(Map(ref) if ref else None)
         self.fit_map()
 
+    @property
+    def exaggeration(self) -> float:
+        """How many times higher than it is the terrain is shown and lit; no data depends on it."""
+        given = self.engine.runner.exaggeration
+        return given.factor if given is not None else 1.0
+
+    def exaggerate(self, factor: float) -> None:
+        """Show the terrain so many times higher than it is."""
+        if factor != self.exaggeration:
+            self.engine.runner.exaggeration = exaggeration(factor)
+            self.redraw()
+
     def toggle_map(self) -> None:
         """Go between the sketch's own view and the map shown last, at first of the first texture."""
         if self.view.map is not None:
@@ -401,6 +416,7 @@ class Session:
         runner, before = engine.runner, self.engine.runner
         runner.mouse, runner.inputs = before.mouse, before.inputs
         runner.hover, runner.drag = before.hover, before.drag
+        runner.exaggeration = before.exaggeration
         engine.plain_forms.notice = silent
         engine.painted.update(self.engine.painted)
         self.engine, self.plan, self._planned, self._drawn = engine, None, None, None
@@ -461,7 +477,8 @@ class Session:
         self.view.take_next()
         self.last_reload = Reload(self._now() - drafts.started, drafts.sandbox_seconds)
         drafts.drawn_well()
-        self._drawn = None if self.view.map is not None else self._picture_key(size)
+        is_other = self.view.map is not None or self.view.look is not None
+        self._drawn = None if is_other else self._picture_key(size)
 
     def _draw_shown(
         self, sketch: Sketch, key: tuple[object, ...], size: tuple[int, int], **how: bool
@@ -475,7 +492,10 @@ class Session:
             if shown is not None and not self._has(shown, sketch):
                 self.notes.append(f"{shown.ref} is gone, so the sketch's own view is shown")
                 self.view.map = shown = None
-            self._draw(shown.of(sketch) if shown else sketch, size, **how)
+            if shown is None and self.view.look is not None and not self.view.look.fits(sketch):
+                self.view.look = None  # its heights are gone
+            seen = shown or self.view.look
+            self._draw(seen.of(sketch) if seen else sketch, size, **how)
             self.drafts.draw_error = None
             if time_alone and self.picture.is_slow:
                 self._pause_once()

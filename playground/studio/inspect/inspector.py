@@ -152,7 +152,7 @@ class Inspector:
             return self._look_at_map(plan, pixel, bytes_, picture.size)
         ref = view_height(plan)
         heights = self._texture(ref)
-        extent, relief = plan.terrain.extent, plan.terrain.relief
+        extent, relief = plan.terrain.extent, plan.shown_relief
         if heights is None or extent is None or relief is None or not session.orbits:
             return PixelReport(pixel, bytes_, None, ())
         if self._ground is None or self._ground.ctx is not session.engine.ctx:

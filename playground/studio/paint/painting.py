@@ -395,11 +395,11 @@ class Painting:
         return layer
 
     def _surface(self) -> tuple[Eye, NDArray[np.float32], tuple[float, float], float] | None:
-        """Return the eye, the heights, the extent [m] and the relief [m] of the picture's terrain."""
+        """Return the eye, the heights, the extent [m] and the shown relief [m] of the picture's terrain."""
         plan, heights = self.session.plan, self._height()
-        if plan is None or heights is None or plan.terrain.extent is None or plan.terrain.relief is None:
+        if plan is None or heights is None or plan.terrain.extent is None or plan.shown_relief is None:
             return None
-        return plan.eye, heights, plan.terrain.extent, plan.terrain.relief
+        return plan.eye, heights, plan.terrain.extent, plan.shown_relief
 
     def _height(self) -> NDArray[np.float32] | None:
         """Return the heights that the picture shows, read once for each picture; a stroke moves none."""

@@ -19,6 +19,7 @@ from playground.errors import PlaygroundError
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import DEFAULT_PICTURE, Graph, Sketch, Technique, Value
 from playground.sketch.wiring import output_names
+from playground.studio.land.looks import Look
 
 
 class View:
@@ -26,6 +27,7 @@ class View:
 
     def __init__(self) -> None:
         self.map: Map | None = None  # drawn instead of the sketch's own view
+        self.look: Look | None = None  # drawn instead of the sketch's own view, where no map is
         self.last_ref = ""  # the texture of the map shown last
         self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
         self.interpolated = True  # what a stopped repeat has not reached is filled
@@ -64,6 +66,11 @@ class View:
     def show(self, shown: Map | None) -> None:
         """Show a map or, with None, the sketch's own view."""
         self.map = shown
+        self.revision += 1
+
+    def show_as(self, look: Look | None) -> None:
+        """Show the terrain in a look or, with None, by the sketch's own view."""
+        self.look = look
         self.revision += 1
 
     def set_map(self, name: str, value: Value) -> None:

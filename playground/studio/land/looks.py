@@ -1,0 +1,96 @@
+"""Looks: one and the same terrain in the colours and the light of a map, of clay, of its slopes.
+
+A look is a view made of shipped techniques (``looks/*.toml``) that takes the place of the sketch's own
+for the picture alone; no file changes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+from playground.engine.plan import Plan, view_height
+from playground.sketch.model import Graph, PassSpec, Sketch, Technique, Value
+from playground.sketch.techniques import read_technique
+from playground.studio.language import tr
+
+LOOKS = ("natural", "hypsometric", "hillshade", "clay", "slope", "contours")
+"""In the order in which they are offered; natural is the sketch's own view."""
+
+_FOLDER = Path(__file__).parent / "looks"
+
+
+def look_title(name: str) -> str:
+    """Return what a look is called."""
+    titles = {
+        "natural": tr("Natural"),
+        "hypsometric": tr("Hypsometric"),
+        "hillshade": tr("Swiss hillshade"),
+        "clay": tr("Clay"),
+        "slope": tr("Slope"),
+        "contours": tr("Contours"),
+    }
+    return titles[name]
+
+
+@cache
+def _technique(name: str) -> Technique:
+    return read_technique(f"./{name}", _FOLDER, _FOLDER)
+
+
+@dataclass(frozen=True)
+class Look:
+    """A view of a sketch's heights in place of its own."""
+
+    name: str  # of ``LOOKS``
+    height: str  # "pass[.inner…]:output"
+    values: tuple[tuple[str, Value], ...] = ()  # of its parameters, by path inside
+
+    def of(self, sketch: Sketch) -> Sketch:
+        """Return the sketch in this look: of the same graph always the same one."""
+        overrides = tuple(v for v in sketch.overrides if not v[0].startswith("view."))
+        return replace(sketch, graph=_with_view(sketch.graph, self), overrides=overrides)
+
+    def fits(self, sketch: Sketch) -> bool:
+        """Return whether the sketch has the heights."""
+        return sketch.graph.find(self.height.partition(":")[0].partition(".")[0]) is not None
+
+
+def look_of(name: str, plan: Plan | None) -> Look | None:
+    """Return a look at what a plan shows; None for natural, and where the plan has no heights."""
+    height = view_height(plan) if plan is not None else ""
+    if plan is None or name == "natural" or not height:
+        return None
+    lines = (("lines.interval", interval_for(plan.terrain.relief or 1.0)),) if name == "contours" else ()
+    return Look(name, height, lines)
+
+
+def interval_for(relief: float) -> float:
+    """Return the metres from one contour line to the next that suit a relief [m]: 1, 2 or 5 with noughts.
+
+    There are 20 to 50 lines.
+    """
+    least = max(relief, 1e-3) / 50
+    power = 10.0 ** math.floor(math.log10(least))
+    number = next(n for n in (1, 2, 5, 10) if n * power >= least * (1 - 1e-9))
+    return min(max(number * power, 0.1), 2000.0)
+
+
+_last: dict[tuple[int, Look], tuple[Graph, Graph]] = {}  # the sketch's graph, and that in a look
+
+
+def _with_view(graph: Graph, look: Look) -> Graph:
+    """Return a graph with a look for its view; the very same for the same, so that plans stay."""
+    key = id(graph), look
+    made = _last.get(key)
+    if made is None or made[0] is not graph:
+        if len(_last) > 8:
+            _last.clear()
+        view = PassSpec(
+            "view", look.name, _technique(look.name), inputs=(("height", look.height),), values=look.values
+        )
+        passes = (*(spec for spec in graph.passes if spec.name != "view"), view)
+        made = _last[key] = graph, replace(graph, passes=passes)
+    return made[1]

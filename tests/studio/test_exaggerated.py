@@ -1,0 +1,123 @@
+"""A terrain shown higher than it is, against closed forms: slopes, shadows, the sea; and no data changes."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from playground.sketch.map_sketch import map_kernel
+from playground.studio.land.exaggerated import LARGEST, exaggeration
+from playground.studio.session import Session
+
+from ..sketch_texts import SMALL_VIEW, passes, use
+from .session_desk import OpenSession
+
+N, EXTENT, RELIEF, SUN = 65, 64.0, 8.0, 45.0
+HEAD = f"format = 1\nsize = {N}\nextent = {EXTENT}\nrelief = {RELIEF}\nbase_elevation = 100.0\n"
+KERNEL = """#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return %s; }
+"""
+FILES = {
+    "plane.glsl": KERNEL % "float(texel.x) / float(size.x - 1)",
+    "wall.glsl": KERNEL % "texel.x < 32 ? 0.0 : texel.x < 34 ? 1.0 : 0.0",
+    "own.glsl": """#pragma kernel(output = "rise:r32f")
+uniform sampler2D height; //! input
+float kernel(ivec2 texel) { return relief; }
+""",
+    "lit.glsl": """#pragma kernel(output = "lit:r32f")
+uniform sampler2D height; //! input
+uniform vec2 sun = vec2(90.0, 45.0); //! direction
+float kernel(ivec2 texel) { return relief * towards_sun.z; }
+""",
+    "on_plane.toml": HEAD
+    + passes(
+        height="./plane",
+        light=use("lighting/l_dot_n", sun={"azimuth": 270.0, "elevation": SUN}, gain=1.0),
+        lines=use("view/contours", interval=1.0),
+        rise="./own",
+        lit="./lit",
+    )
+    + SMALL_VIEW,
+    "on_wall.toml": HEAD
+    + passes(
+        height="./wall",
+        light=use("lighting/ray_cast", sun={"azimuth": 90.0, "elevation": SUN}, gain=1.0),
+    )
+    + SMALL_VIEW,
+}
+
+
+def opened(open_session: OpenSession, path: Path) -> Session:
+    session: Session = open_session(path)
+    assert session.frame((48, 32)) is not None, session.error
+    return session
+
+
+def read(session: Session, ref: str) -> NDArray[np.float32]:
+    values = session.read_values(ref)
+    assert values is not None, session.notes
+    return values
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0, 3.0])
+def test_a_plane_is_lit_by_the_normal_of_what_is_seen(
+    open_session: OpenSession, folder: Path, factor: float
+) -> None:
+    session = opened(open_session, folder / "on_plane.toml")
+    session.exaggerate(factor)
+    slope = factor * RELIEF / EXTENT  # rises to the east; the sun is in the west
+    sun = math.radians(SUN)
+    received = (slope * math.cos(sun) + math.sin(sun)) / math.hypot(slope, 1.0)
+    assert read(session, "light:light")[20:40, 20:40, 0] == pytest.approx(received, rel=2e-3)
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0])
+def test_a_wall_twice_as_high_throws_a_shadow_twice_as_long(
+    open_session: OpenSession, folder: Path, factor: float
+) -> None:
+    session = opened(open_session, folder / "on_wall.toml")
+    session.exaggerate(factor)
+    visible = read(session, "light:light")[32, :32, 3]
+    assert np.count_nonzero(visible < 0.5) == pytest.approx(factor * RELIEF, abs=1)
+
+
+def test_no_data_changes_and_nothing_is_made_again(open_session: OpenSession, folder: Path) -> None:
+    session = opened(open_session, folder / "on_plane.toml")
+    refs = ("height:height", "lines:colour", "rise:rise")
+    before = [read(session, ref) for ref in refs]
+    runs = dict(session.engine.runs)
+    session.exaggerate(3.0)
+    session.frame((48, 32))
+    assert all(np.array_equal(read(session, ref), old) for ref, old in zip(refs, before, strict=True))
+    assert session.engine.runs["height"] == runs["height"]
+    assert session.shown is not None and session.shown.sketch == session.shown.file
+    assert session.plan is not None and session.plan.terrain.relief == RELIEF
+
+
+def test_a_kernel_of_ones_own_follows_where_it_has_a_direction_of_light(
+    open_session: OpenSession, folder: Path
+) -> None:
+    session = opened(open_session, folder / "on_plane.toml")
+    session.exaggerate(2.0)
+    assert read(session, "rise:rise")[0, 0] == RELIEF
+    assert read(session, "lit:lit")[0, 0] == pytest.approx(2 * RELIEF * math.sin(math.radians(45.0)))
+
+
+def test_the_sea_stays_at_its_shore() -> None:
+    given = exaggeration(2.0)
+    assert given is not None
+    draw = map_kernel()
+    terrain = {"relief": 800.0, "base_elevation": 200.0}
+    replaced = given.given(draw, {"sea_level": 320.0}, terrain)
+    shore = (320.0 - 200.0) / 800.0  # the height of the shore
+    assert 320.0 - replaced["base_elevation"] == pytest.approx(shore * replaced["relief"])
+
+
+def test_factors_have_bounds() -> None:
+    assert exaggeration(1.0) is None
+    largest = exaggeration(1e9)
+    assert largest is not None and largest.factor == LARGEST

@@ -1,0 +1,75 @@
+"""Looks of a terrain: each draws any heights, by map or not, and leaves the sketch and its file alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.studio.land.looks import LOOKS, interval_for, look_of, look_title
+from playground.studio.session import Session
+
+from ..sketch_texts import SMALL_VIEW, map_of, passes
+from .session_desk import OpenSession
+
+HEAD = "format = 1\nsize = 17\nextent = 160.0\nrelief = 160.0\n"
+FILES = {
+    # Level, then a slope of 45 degrees to the east.
+    "step.glsl": """#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return max(float(texel.x - 8), 0.0) / 16.0; }
+""",
+    "land.toml": HEAD + passes(height="./step") + SMALL_VIEW,
+    "map.toml": HEAD + passes(height="./step", light="lighting/l_dot_n") + map_of("light"),
+}
+
+
+@pytest.mark.parametrize("file", ["land.toml", "map.toml"])
+def test_every_look_draws_and_none_changes_the_sketch(
+    open_session: OpenSession, folder: Path, file: str
+) -> None:
+    session: Session = open_session(folder / file)
+    session.frame((48, 32))
+    before, pictures = session.sketch, set()
+    plan = session.plan
+    for name in LOOKS:
+        session.view.show_as(look_of(name, plan))
+        session.frame((48, 32))
+        assert session.error is None and not session.notes, name
+        frame = session.read()
+        assert frame is not None
+        pictures.add(frame.array.tobytes())
+    assert len(pictures) == len(LOOKS) and session.sketch is before
+    assert (folder / file).read_text(encoding="utf-8") == FILES[file]
+
+
+def test_slopes_are_coloured_by_degrees_and_not_by_what_is_exaggerated(
+    open_session: OpenSession, folder: Path
+) -> None:
+    session: Session = open_session(folder / "land.toml")
+    session.frame((48, 32))
+    look = look_of("slope", session.plan)
+    assert look is not None and session.sketch is not None
+    seen = look.of(session.sketch)
+    steep = session.engine.read(seen, "view.steepness:cover")
+    assert steep[8, 2] == 0.0 and steep[8, 14] == pytest.approx(1.0, abs=1e-3), "level, and 45 degrees"
+    session.exaggerate(0.5)
+    assert np.array_equal(session.engine.read(seen, "view.steepness:cover"), steep)
+
+
+def test_the_same_graph_in_the_same_look_stays_the_same(open_session: OpenSession, folder: Path) -> None:
+    session: Session = open_session(folder / "land.toml")
+    session.frame((48, 32))
+    look = look_of("clay", session.plan)
+    assert look is not None and session.sketch is not None
+    assert look.of(session.sketch).graph is look.of(session.sketch).graph
+
+
+@pytest.mark.parametrize(("relief", "interval"), [(840.0, 20.0), (100.0, 2.0), (9000.0, 200.0), (51.0, 2.0)])
+def test_contour_intervals_are_round(relief: float, interval: float) -> None:
+    assert interval_for(relief) == pytest.approx(interval)
+    assert 20 <= relief / interval_for(relief) <= 50
+
+
+def test_each_look_has_a_title() -> None:
+    assert len({look_title(name) for name in LOOKS}) == len(LOOKS)
