@@ -287,7 +287,7 @@ def _values_in_file(draft: Draft) -> dict[Key, object]:
     result: dict[Key, object] = {}
     for path in draft.applied:
         if path in TERRAIN_KEYS:
-            result["value", path] = getattr(draft.base, path)
+            result["value", path] = getattr(draft.base.terrain, path)
         else:
             result["value", path] = values[resolve(draft.base.graph, path)[0].path]
     for name, _ in draft.edits.techniques:

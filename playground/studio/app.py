@@ -363,7 +363,8 @@ class Live:
 
     def _patience(self) -> float:
         """Return how long nothing needs to be done [s]."""
-        if self.session.is_listening or (self.session.animated and self.session.clock.playing):
+        moves = self.session.animated and self.session.clock.playing
+        if self.session.is_listening or moves or self.session.view.turning:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
         if self._settling > 0 or self.remotes.waits or self.window.keys.waits:
             return 0.0
@@ -399,6 +400,7 @@ class Live:
         now = time.perf_counter()
         if self.session.animated:
             self.session.advance(min(now - self._last, _MAX_STEP), datetime.now())
+        self.session.turn(min(now - self._last, _MAX_STEP))
         self._last = now
 
     def _draw_frame(self) -> None:

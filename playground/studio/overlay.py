@@ -17,6 +17,7 @@ from playground.studio.graph.panel import draw_graph
 from playground.studio.inspect.inspector import Inspector
 from playground.studio.inspect.panel import draw_values
 from playground.studio.keyframes.panel import draw_timeline
+from playground.studio.land.panel import draw_exaggeration
 from playground.studio.notices import Notices
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -130,6 +131,7 @@ def draw_inspection(
     if picture is not None:
         inspection.compare.follow(picture)
     inspection.graph.update(bench.notices.now())  # before it is drawn: what is released is not shown
+    draw_exaggeration(session, look, area)
     draw_graph(session, inspection, look, area)
     draw_ab(inspection.compare, bench.undo, look, area)
     draw_timeline(bench.undo, bench.interface, look, area)

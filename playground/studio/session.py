@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+TURN = 12.0
+"""[degrees a second] of the turntable."""
+
 Version = tuple[int, int, int]
 """Changes whenever the numbers of a texture may have: its pass ran again, or another engine did."""
 
@@ -318,6 +321,19 @@ class Session:
             self.engine.runner.exaggeration = exaggeration(factor)
             self.redraw()
 
+    def turn_table(self, on: bool) -> None:
+        """Have the camera go round the terrain, or stop it: it stays where it is then."""
+        self.view.turning = on and self.orbits
+        if self.view.turned and not on and self.sketch is not None:
+            camera, turned = self.sketch.camera, self.view.turned
+            self.drafts.set_camera(replace(camera, azimuth=round((camera.azimuth + turned) % 360, 2)))
+            self.view.turned = 0.0
+
+    def turn(self, seconds: float) -> None:
+        """Go on with the turntable, where it is on."""
+        if self.view.turning:
+            self.view.turned = (self.view.turned + TURN * seconds) % 360.0
+
     def toggle_map(self) -> None:
         """Go between the sketch's own view and the map shown last, at first of the first texture."""
         if self.view.map is not None:
@@ -451,7 +467,8 @@ class Session:
     def _picture_key(self, size: tuple[int, int]) -> tuple[object, ...]:
         sketch = self.drafts.sketch
         time = self.clock.time if sketch is not None and is_animated(sketch) else 0.0
-        return self.drafts.revision, self.view.revision, size, self.view.framed_for, time
+        view = self.view.revision, self.view.framed_for, self.view.turned
+        return self.drafts.revision, *view, size, time
 
     def _plan_coming(self, coming: Sketch, size: tuple[int, int]) -> None:
         """Plan a text that the sandbox tries, unless it reads new data: to plan that looks into the file."""

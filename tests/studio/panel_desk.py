@@ -48,6 +48,7 @@ class Bare:
             (imgui, "menu_item_simple"),
             (imgui, "selectable"),
             (imgui, "checkbox"),
+            (imgui, "radio_button"),
             (imgui, "begin_combo"),
             (imgui, "input_text_with_hint"),
             (imgui, "input_text"),

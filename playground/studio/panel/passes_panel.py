@@ -39,6 +39,7 @@ from playground.studio.draw import (
 from playground.studio.edits.edits import Draft
 from playground.studio.graph.graph import cost_of
 from playground.studio.interface import TypedAhead
+from playground.studio.land.panel import TerrainGroup
 from playground.studio.notices import Notices
 from playground.studio.panel.parameter_list import (
     Group,
@@ -218,6 +219,7 @@ class Sections:
 
     def __post_init__(self) -> None:
         self._channels = ChannelRows()
+        self._terrain = TerrainGroup()
 
     def draw(self, sketch: Sketch, bench: Workbench, look: Theme) -> None:
         """Draw every pass, or what a search has found of them."""
@@ -234,6 +236,8 @@ class Sections:
         main = main_items(draft.base) if not memory.filter else ()
         if main:
             drawing.main(main)
+        if not memory.filter:
+            self._terrain.draw(sketch, session, rows, look)
         feeders = {channel.feeder for channel in channels(draft.base) if channel.alone}
         for spec in sketch.graph.passes:
             section = sections.get(spec.name)

@@ -16,6 +16,7 @@ import time
 import time as clock
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.engine import Engine
@@ -256,7 +257,12 @@ def _has_new_text(plan: Plan | None, sketch: Sketch) -> bool:
 
 def _framed(sketch: Sketch, view: View, time: float, size: Size) -> Sketch:
     """Return a sketch at a time as it is shown in a picture of a size."""
-    return framed(sketch, time, view.framed_for, size) if traits_of(sketch).camera else sketch
+    if not traits_of(sketch).camera:
+        return sketch
+    if view.turned:
+        now = sketch.at(time)
+        sketch = now.with_camera(replace(now.camera, azimuth=now.camera.azimuth + view.turned))
+    return framed(sketch, time, view.framed_for, size)
 
 
 @contextmanager

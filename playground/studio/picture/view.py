@@ -31,6 +31,8 @@ class View:
         self.last_ref = ""  # the texture of the map shown last
         self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
         self.interpolated = True  # what a stopped repeat has not reached is filled
+        self.turning = False  # the camera goes round, as on a turntable
+        self.turned = 0.0  # [degrees] by which it has gone, for the picture alone
         self.framed_for = DEFAULT_PICTURE  # [pixels] the image whose sides stay visible in a narrower window
         self.revision = 0
         self._next: tuple[dict[str, int], Map | None] | None = None  # for a sketch that is being opened
