@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from playground.sketch.model import Sketch
 from playground.studio import theme
@@ -23,6 +23,8 @@ from playground.studio.draw import (
     pushed_id,
     row,
     slot,
+    slots_width,
+    styled,
 )
 from playground.studio.land.exaggerated import LARGEST
 from playground.studio.land.land import (
@@ -94,12 +96,14 @@ class TerrainGroup:
         factor = session.exaggeration
         note = tr("How many times higher the land is drawn and lit; no data changes, and no file")
         with row(tr("Exaggeration"), note, edited=factor != 1.0):
-            wide, style = imgui.calc_item_width(), imgui.get_style()
+            wide, style = imgui.calc_item_width() + slots_width(), imgui.get_style()
             start = imgui.get_cursor_pos_x()
-            for times in (1, 2, 3):
-                if button(f"×{times}###times{times}", tr("{times} times as high", times=times)):
-                    session.exaggerate(float(times))
-                imgui.same_line(0, style.item_inner_spacing.x)
+            narrow = ImVec2(style.item_inner_spacing.x, style.frame_padding.y)
+            with styled(sizes={imgui.StyleVar_.frame_padding: narrow}):
+                for times in (1, 2, 3):
+                    if button(f"×{times}###times{times}", tr("{times} times as high", times=times)):
+                        session.exaggerate(float(times))
+                    imgui.same_line(0, style.item_inner_spacing.x)
             left = max(start + wide - imgui.get_cursor_pos_x(), 40.0)
             imgui.set_next_item_width(left)
             changed = slide(f"{TYPE_ROW}exaggeration", factor, (0.5, LARGEST), "×%.2f", logarithmic=True)
