@@ -37,6 +37,7 @@ class Preferences:
     size: float = 1.0
     is_light: bool = False
     language: str = ""  # "": the system's
+    is_in_feet: bool = False  # lengths of the terrain, else in metres
     panes: dict[str, float] = field(default_factory=dict)  # what ``Panes`` remembers, by name
     used_keys: tuple[str, ...] = ()  # of those that the window hints at
     shows_readout: bool = True  # frames a second in the picture's corner
@@ -61,7 +62,7 @@ class Preferences:
             write_file(self.file, json.dumps({"format": FORMAT, **remembered}))
 
 
-_REMEMBERED = ("size", "is_light", "language", "panes", "used_keys", "shows_readout")
+_REMEMBERED = ("size", "is_light", "language", "is_in_feet", "panes", "used_keys", "shows_readout")
 
 
 def remembered_preferences(folder: Path | None = None) -> Preferences:
@@ -81,7 +82,7 @@ def remembered_preferences(folder: Path | None = None) -> Preferences:
         return preferences
     if table.get("size") in SIZES:
         preferences.size = float(table["size"])
-    for name in ("is_light", "language", "shows_readout"):
+    for name in ("is_light", "language", "is_in_feet", "shows_readout"):
         if isinstance(table.get(name), type(getattr(preferences, name))):
             setattr(preferences, name, table[name])
     panes = table.get("panes")

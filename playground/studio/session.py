@@ -491,10 +491,13 @@ class Session:
             return
         if drafts.opening:
             self.before_switch()
-        self.view.take_next()
+        exaggeration_before = self.exaggeration
+        if self.view.take_next():
+            self.exaggerate(1.0)
         self.last_reload = Reload(self._now() - drafts.started, drafts.sandbox_seconds)
         drafts.drawn_well()
         is_other = self.view.map is not None or self.view.look is not None
+        is_other |= self.exaggeration != exaggeration_before
         self._drawn = None if is_other else self._picture_key(size)
 
     def _draw_shown(

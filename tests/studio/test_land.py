@@ -12,6 +12,7 @@ from playground.paths import SKETCHES
 from playground.sketch.model import Camera
 from playground.studio.edits.edits import Draft
 from playground.studio.land.land import Land, aspect_sizes, from_above, north_up, sun_items
+from playground.studio.land.looks import look_of
 from playground.studio.session import TURN, Session
 
 from ..sketch_texts import SMALL_VIEW, passes
@@ -47,6 +48,7 @@ def test_metres_are_typed_in_metres_or_feet_and_undone(bare: Bare) -> None:
     typed(bare, "##land.relief", "250")
     assert sketch_of(bare).sketch.terrain.relief == 250.0
     bare.click("ft###unit ft")
+    assert bare.bench.interface.preferences.is_in_feet
     typed(bare, "##land.relief", "1000")
     assert sketch_of(bare).sketch.terrain.relief == pytest.approx(304.8)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
@@ -143,6 +145,22 @@ def test_the_sun_is_by_the_clock_where_daylight_is_wired(open_bare: OpenBare, fo
         f"daylight.{name}" for name in ("hour", "day", "year", "latitude", "longitude")
     ]
     assert names[folder.name] == ["light.sun"]
+
+
+def test_another_sketch_is_shown_as_it_is(open_session: OpenSession, folder: Path) -> None:
+    session: Session = open_session(folder)
+    session.frame((48, 32))
+    session.exaggerate(3.0)
+    session.view.show_as(look_of("clay", session.plan))
+    session.frame((48, 32))
+    (folder / "other").mkdir()
+    for name, text in FILES.items():
+        (folder / "other" / name).write_text(text, encoding="utf-8")
+    session.open(folder / "other")
+    for _ in range(3):
+        session.frame((48, 32))
+    assert session.path.parent.name == "other" and session.view.look is None
+    assert session.plan is not None and session.plan.shown_relief == 100.0
 
 
 def test_sizes_keep_proportions() -> None:

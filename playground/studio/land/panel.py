@@ -26,6 +26,7 @@ from playground.studio.draw import (
     slots_width,
     styled,
 )
+from playground.studio.interface import Preferences
 from playground.studio.land.exaggerated import LARGEST
 from playground.studio.land.land import (
     METRES_IN,
@@ -62,7 +63,14 @@ class TerrainGroup:
 
     land: Land = field(default_factory=Land)
 
-    def draw(self, sketch: Sketch, session: Session, rows: ParameterRows, look: Theme) -> None:
+    def draw(
+        self,
+        sketch: Sketch,
+        session: Session,
+        rows: ParameterRows,
+        look: Theme,
+        preferences: Preferences,
+    ) -> None:
         """Draw it; ``rows`` draws the parameters of passes that belong to it."""
         imgui.spacing()
         flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.allow_overlap
@@ -74,7 +82,8 @@ class TerrainGroup:
         with pushed_id("terrain"):
             self._exaggeration(session)
             self._look(session)
-            self._metres(session)
+            self.land.unit = "ft" if preferences.is_in_feet else "m"
+            self._metres(session, preferences)
             self._parameters(sea_items(draft), sketch, rows)
             if imgui.tree_node_ex(f"{tr('Sun')}###sun"):
                 items = sun_items(draft)
@@ -128,7 +137,7 @@ class TerrainGroup:
         if chosen is None and name != LOOKS[0]:
             session.notes.append(tr("this sketch has no heights that a look could show"))
 
-    def _metres(self, session: Session) -> None:
+    def _metres(self, session: Session, preferences: Preferences) -> None:
         assert session.plan is not None
         terrain, unit = session.plan.terrain, self.land.unit
         relief, extent, base = terrain.relief, terrain.extent, terrain.base_elevation
@@ -148,7 +157,7 @@ class TerrainGroup:
         with row(tr("Units"), tr("In which lengths are shown here; files have metres")):
             for name in METRES_IN:
                 if imgui.radio_button(f"{name}###unit {name}", unit == name):
-                    self.land.unit = name
+                    preferences.choose(is_in_feet=name == "ft")
                 imgui.same_line()
             imgui.new_line()
 

@@ -50,11 +50,17 @@ class View:
         self.map = shown
         self.revision += 1
 
-    def take_next(self) -> None:
-        """Show what was restored for the sketch that is drawn now for the first time."""
-        if self._next is not None:
-            (steps, shown), self._next = self._next, None
-            self.restore(steps, shown)
+    def take_next(self) -> bool:
+        """Show what was restored for the sketch that is drawn now for the first time, if any is.
+
+        Returns whether that is so; a look and a turntable were the one before's.
+        """
+        if self._next is None:
+            return False
+        (steps, shown), self._next = self._next, None
+        self.look, self.turning, self.turned = None, False, 0.0
+        self.restore(steps, shown)
+        return True
 
     def forget_next(self) -> None:
         """Forget what was restored for a sketch that is not opened after all."""
