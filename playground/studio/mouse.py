@@ -37,7 +37,7 @@ class PictureMouse:
         wheel = 0.0 if self._size_brush() else io.mouse_wheel
         if io.key_ctrl:
             if left and (io.mouse_delta.x or io.mouse_delta.y):
-                session.drafts.move_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
+                session.move_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
             return
         if self._divide(io.mouse_pos.x - area[0], area[2]) or (not io.key_shift and self._paint(area)):
             left = False

@@ -32,6 +32,7 @@ from playground.studio.clock import Clock
 from playground.studio.edits.drafts import Drafts
 from playground.studio.edits.edits import Draft, StoredEdits
 from playground.studio.land.exaggerated import exaggeration
+from playground.studio.picture.gestures import turned_sun
 from playground.studio.picture.shown_picture import CatchUp, ShownPicture
 from playground.studio.picture.view import View, fitted, in_view, steps_of_repeats
 from playground.studio.reload.dependencies import DataFiles
@@ -320,6 +321,15 @@ class Session:
         if factor != self.exaggeration:
             self.engine.runner.exaggeration = exaggeration(factor)
             self.redraw()
+
+    def move_suns(self, across: float, up: float) -> None:
+        """Drag the suns of what is seen, those of the sketch or a look's own; see ``turned_sun``."""
+        look = self.view.look if self.view.map is None else None
+        if look is None:
+            self.drafts.move_suns(across, up)
+        elif (sun := look.sun()) is not None and isinstance(sun[1], tuple):
+            azimuth, elevation = sun[1]
+            self.view.show_as(look.with_sun(turned_sun((azimuth, elevation), across, up)))
 
     def turn_table(self, on: bool) -> None:
         """Have the camera go round the terrain, or stop it: it stays where it is then."""

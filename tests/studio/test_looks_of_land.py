@@ -65,6 +65,27 @@ def test_the_same_graph_in_the_same_look_stays_the_same(open_session: OpenSessio
     assert look.of(session.sketch).graph is look.of(session.sketch).graph
 
 
+def test_a_look_has_a_sun_of_its_own_that_moves_its_light_alone(
+    open_session: OpenSession, folder: Path
+) -> None:
+    session: Session = open_session(folder / "map.toml")
+    session.frame((48, 32))
+    look, sketch = look_of("hypsometric", session.plan), session.sketch
+    slope = look_of("slope", session.plan)
+    assert look is not None and slope is not None and sketch is not None
+    sun = look.sun()
+    assert sun is not None and sun[1] == (315.0, 45.0) and slope.sun() is None
+    turned = look.with_sun((135.0, 45.0))
+    assert turned.sun() == (sun[0], (135.0, 45.0))
+    seen = [one.of(sketch) for one in (look, turned)]
+    lights = [session.engine.read(one, "view.sunlight:light")[8, 14, 0] for one in seen]
+    assert lights[0] > lights[1], "the slope faces west"
+    session.view.show_as(look)
+    session.move_suns(0.25, 0.0)
+    assert session.view.look is not None and session.view.look.sun() == (sun[0], (0.0, 45.0))
+    assert session.sketch is sketch
+
+
 @pytest.mark.parametrize(("relief", "interval"), [(840.0, 20.0), (100.0, 2.0), (9000.0, 200.0), (51.0, 2.0)])
 def test_contour_intervals_are_round(relief: float, interval: float) -> None:
     assert interval_for(relief) == pytest.approx(interval)

@@ -12,13 +12,15 @@ from functools import cache
 from pathlib import Path
 
 from playground.engine.plan import Plan, view_height
-from playground.sketch.model import Graph, PassSpec, Sketch, Technique, Value
+from playground.sketch.assign import find_targets
+from playground.sketch.model import Graph, Parameter, PassSpec, Sketch, Technique, Value
 from playground.sketch.techniques import read_technique
 from playground.studio.language import tr
 
 LOOKS = ("natural", "hypsometric", "hillshade", "clay", "slope", "contours")
 """In the order in which they are offered; natural is the sketch's own view."""
 
+_SUN = "sunlight.sun"  # of a look that has a light
 _FOLDER = Path(__file__).parent / "looks"
 
 
@@ -52,6 +54,20 @@ class Look:
         """Return the sketch in this look: of the same graph always the same one."""
         overrides = tuple(v for v in sketch.overrides if not v[0].startswith("view."))
         return replace(sketch, graph=_with_view(sketch.graph, self), overrides=overrides)
+
+    def sun(self) -> tuple[Parameter, Value] | None:
+        """Return the direction of its light, and the azimuth and elevation it has; None where it has none."""
+        technique = _technique(self.name)
+        if not isinstance(technique, Graph) or technique.find("sunlight") is None:
+            return None
+        parameter = find_targets(technique, _SUN)[0].parameter
+        spec = technique.find("sunlight")
+        own = dict(spec.values).get("sun", parameter.default) if spec is not None else parameter.default
+        return parameter, dict(self.values).get(_SUN, own)
+
+    def with_sun(self, value: Value) -> Look:
+        """Return the look with another direction of light."""
+        return replace(self, values=(*(v for v in self.values if v[0] != _SUN), (_SUN, value)))
 
     def fits(self, sketch: Sketch) -> bool:
         """Return whether the sketch has the heights."""

@@ -44,7 +44,7 @@ from playground.studio.language import tr
 from playground.studio.panel.parameter_list import Item
 from playground.studio.session import Session
 from playground.studio.theme import Theme
-from playground.studio.widgets import slide
+from playground.studio.widgets import WidgetSlot, draw_value, slide
 
 TYPE_ROW = "##land."
 _CLAMP = imgui.SliderFlags_.always_clamp.value
@@ -86,10 +86,7 @@ class TerrainGroup:
             self._metres(session, preferences)
             self._parameters(sea_items(draft), sketch, rows)
             if imgui.tree_node_ex(f"{tr('Sun')}###sun"):
-                items = sun_items(draft)
-                self._parameters(items, sketch, rows)
-                if not items:
-                    imgui.text_disabled(tr("this sketch has no sun of its own"))
+                self._sun(sketch, session, rows, look)
                 imgui.tree_pop()
             if imgui.tree_node_ex(f"{tr('Camera')}###camera"):
                 self._camera(session)
@@ -98,6 +95,25 @@ class TerrainGroup:
     def _parameters(self, items: Iterable[Item], sketch: Sketch, rows: ParameterRows) -> None:
         for item in items:
             rows.draw(replace(item, label=f"{TYPE_ROW}{item.path}"), Path(sketch.folder))
+
+    def _sun(self, sketch: Sketch, session: Session, rows: ParameterRows, look: Theme) -> None:
+        """Draw the sun of what is seen: of a look its own, else the sketch's."""
+        seen = session.view.look
+        if seen is None:
+            items = sun_items(session.shown) if session.shown is not None else []
+            self._parameters(items, sketch, rows)
+            if not items:
+                imgui.text_disabled(tr("this sketch has no sun of its own"))
+            return
+        sun = seen.sun()
+        if sun is None:
+            imgui.text_disabled(tr("no light changes this look"))
+            return
+        parameter, value = sun
+        with row(parameter.title, tr("The light of this look; that of the sketch stays as it is")):
+            changed = draw_value(parameter, value, WidgetSlot(f"{TYPE_ROW}look sun", look.scale, Path()))
+        if changed is not None:
+            session.view.show_as(seen.with_sun(changed))
 
     # ── how high and large ───────────────────────────────────────────────────
 
