@@ -9,7 +9,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from playground.engine.engine import Engine
+from playground.paths import SKETCHES
+from playground.sketch.load import load
 from playground.sketch.map_sketch import map_kernel
+from playground.sketch.techniques import name_of
 from playground.studio.land.exaggerated import LARGEST, exaggeration
 from playground.studio.session import Session
 
@@ -121,3 +125,22 @@ def test_factors_have_bounds() -> None:
     assert exaggeration(1.0) is None
     largest = exaggeration(1e9)
     assert largest is not None and largest.factor == LARGEST
+
+
+@pytest.mark.slow
+def test_no_height_of_any_shipped_sketch_changes(any_engine: Engine) -> None:
+    """By what textures depend on; what erodes and what flows depends on true metres as well."""
+    runner, changed = any_engine.runner, set()
+    for path in sorted(SKETCHES.glob("*.toml")):
+        sketch, results = load(path), []
+        for factor in (1.0, 2.0):
+            runner.exaggeration = exaggeration(factor)
+            plan = any_engine.plan(sketch, size=(160, 90))
+            runner.set_frame(plan)
+            keys = any_engine.keys_of(plan)
+            results.append({step.path: keys.result(step.path) for step in plan.walk()})
+        for step in plan.walk():
+            if results[0][step.path] != results[1][step.path]:
+                changed |= {(path.stem, step.path) for o in step.kernel.outputs if o.name == "height"}
+                assert not name_of(Path(step.kernel.path)).startswith(("erosion/", "water/fill")), step.path
+    assert changed == set()
