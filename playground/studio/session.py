@@ -26,7 +26,7 @@ from playground.errors import ContextError, PlaygroundError
 from playground.sketch.assign import find_targets, resolve
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map, refs_of
-from playground.sketch.model import Graph, Sketch, Value
+from playground.sketch.model import Camera, Graph, Sketch, Value
 from playground.sketch.traits import has_moving_counts, is_animated, traits_of
 from playground.studio.clock import Clock
 from playground.studio.edits.drafts import Drafts
@@ -361,9 +361,11 @@ class Session:
             return None
         return result.textures[source.output], (id(engine), result.number, engine.runs[source.path])
 
-    def restore_view(self, steps: Mapping[str, int], shown: Map | None) -> None:
+    def restore_view(
+        self, steps: Mapping[str, int], shown: Map | None, views: Mapping[int, Camera] | None = None
+    ) -> None:
         """Stop repeats and show a map, as ``View.restore``; of a sketch being opened, once that is drawn."""
-        self.view.restore(steps, shown, later=self.drafts.opening)
+        self.view.restore(steps, shown, views=views, later=self.drafts.opening)
 
     def stop_at(self, path: str, step: int) -> None:
         """Show a repeated pass after so many steps; after its last, it runs to its end again."""

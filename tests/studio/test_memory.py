@@ -20,6 +20,7 @@ from playground.sketch.model import Camera
 from playground.studio.edits.autosave import QUIET, TIME, Autosave
 from playground.studio.edits.edits import Edits, FileValue
 from playground.studio.edits.memory import Compared, Memory, Remembered
+from playground.studio.land.land import keep_view, recall_view
 from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 
@@ -58,6 +59,7 @@ FULL = Remembered(
         0.25,
         16.0,
     ),
+    ((1, Camera(azimuth=180.0, elevation=89.0)), (3, Camera(target=(1.0, 2.0, 3.0)))),
 )
 
 
@@ -123,10 +125,10 @@ def test_a_file_of_before_there_was_more_to_remember_is_read(tmp_path: Path) -> 
     memory = Memory(tmp_path / "sketch.toml", tmp_path)
     memory.write(FULL)
     table = json.loads(memory.path.read_text(encoding="utf-8"))
-    for name in ("at", "camera_in_file", "loop", "compared"):
+    for name in ("at", "camera_in_file", "loop", "compared", "views"):
         del table[name]
     memory.path.write_text(json.dumps(table), encoding="utf-8")
-    expected = replace(FULL, at=None, camera_in_file=None, loop=None, compared=None)
+    expected = replace(FULL, at=None, camera_in_file=None, loop=None, compared=None, views=())
     assert memory.read() == (expected, "")
 
 
@@ -183,6 +185,20 @@ def test_a_map_comes_back_too(place: Place) -> None:
     autosave.close()
     again, _ = place.start()
     np.testing.assert_array_equal(picture(again), before)
+
+
+def test_numbered_views_come_back_with_their_sketch(place: Place) -> None:
+    session, autosave = place.start()
+    picture(session)
+    keep_view(session, 2)
+    kept = session.sketch.camera
+    session.drafts.set_camera(Camera(azimuth=20.0))
+    autosave.look((900, 600))
+    autosave.close()
+    again, _ = place.start()
+    picture(again)
+    assert recall_view(again, 2) and again.sketch.camera == kept
+    assert not recall_view(again, 1)
 
 
 def test_it_is_written_as_one_goes_once_it_rests(place: Place) -> None:

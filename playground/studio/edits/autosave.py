@@ -162,7 +162,9 @@ class Autosave:
         if remembered.loop is not None:
             clock.set_loop(*remembered.loop)
         session.restore_view(
-            dict(remembered.steps), Map(remembered.map, remembered.map_values) if remembered.map else None
+            dict(remembered.steps),
+            Map(remembered.map, remembered.map_values) if remembered.map else None,
+            dict(remembered.views),
         )
 
     def _drawn_of(self, draft: Draft) -> dict[str, Any]:
@@ -180,6 +182,7 @@ class Autosave:
             "map": shown.ref if shown else "",
             "map_values": shown.values if shown else (),
             "steps": tuple(sorted(view.steps.items())),
+            "views": tuple(sorted(view.views.items())),
         }
 
     def _snapshot(self, draft: Draft, window: tuple[int, int], at: tuple[int, int] | None) -> Remembered:

@@ -74,6 +74,7 @@ class Remembered:
     camera_in_file: Camera | None = None  # the file's, where another was edited
     loop: tuple[float, float] | None = None  # [s] the times between which time goes round
     compared: Compared | None = None
+    views: tuple[tuple[int, Camera], ...] = ()  # numbered ones that are kept
 
     @property
     def start(self) -> StoredEdits:

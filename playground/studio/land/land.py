@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import dataclass, replace
 
 from playground.sketch.model import Camera, Sketch
 from playground.studio.edits.edits import Draft
@@ -23,11 +22,10 @@ SIZES = (65, 129, 257, 513, 1025, 2049)
 
 @dataclass
 class Land:
-    """What the group remembers while the window is open: its unit, and the views of each sketch."""
+    """What the group remembers while the window is open: its unit and what is typed."""
 
     unit: str = "m"
     size_text: str = ""  # that is being typed
-    views: dict[tuple[Path, int], Camera] = field(default_factory=dict)
 
     def shown(self, metres: float) -> float:
         """Return metres in the unit."""
@@ -37,18 +35,20 @@ class Land:
         """Return what is shown in the unit in metres, in whole millimetres."""
         return round(shown * METRES_IN[self.unit], 3)
 
-    def store(self, session: Session, number: int) -> None:
-        """Keep the camera as a numbered view of the sketch."""
-        if session.sketch is not None:
-            self.views[session.path, number] = session.sketch.camera
 
-    def recall(self, session: Session, number: int) -> bool:
-        """Look from where a numbered view was kept; return whether there is one."""
-        camera = self.views.get((session.path, number))
-        if camera is not None:
-            session.turn_table(False)
-            session.drafts.set_camera(camera)
-        return camera is not None
+def keep_view(session: Session, number: int) -> None:
+    """Keep the camera as a numbered view of the sketch, remembered with the user's edits."""
+    if session.sketch is not None:
+        session.view.views[number] = session.sketch.camera
+
+
+def recall_view(session: Session, number: int) -> bool:
+    """Look from where a numbered view was kept; return whether there is one."""
+    camera = session.view.views.get(number)
+    if camera is not None:
+        session.turn_table(False)
+        session.drafts.set_camera(camera)
+    return camera is not None
 
 
 def keep_exaggeration(session: Session) -> None:

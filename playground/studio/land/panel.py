@@ -35,7 +35,9 @@ from playground.studio.land.land import (
     aspect_sizes,
     from_above,
     keep_exaggeration,
+    keep_view,
     north_up,
+    recall_view,
     sea_items,
     sun_items,
 )
@@ -247,15 +249,15 @@ class TerrainGroup:
 
     def _views(self, session: Session) -> None:
         for number in VIEWS:
-            kept = (session.path, number) in self.land.views
+            kept = number in session.view.views
             mark = "●" if kept else ""
             note = tr("View {number}", number=number) if kept else tr("Empty: Shift+click keeps this")
             pressed = button(f"{number}{mark}###view {number}", note, small=True)
             stores = imgui.is_item_clicked(1) or (pressed and imgui.get_io().key_shift)
             if stores:
-                self.land.store(session, number)
+                keep_view(session, number)
                 session.notes.append(tr("kept as view {number}", number=number))
-            elif pressed and not self.land.recall(session, number):
+            elif pressed and not recall_view(session, number):
                 session.notes.append(tr("view {number} is empty: Shift+click keeps this one", number=number))
             imgui.same_line()
         imgui.new_line()

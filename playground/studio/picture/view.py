@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.map_sketch import Map
-from playground.sketch.model import DEFAULT_PICTURE, Graph, Sketch, Technique, Value
+from playground.sketch.model import DEFAULT_PICTURE, Camera, Graph, Sketch, Technique, Value
 from playground.sketch.wiring import output_names
 from playground.studio.land.looks import Look
 
@@ -31,20 +31,31 @@ class View:
         self.last_ref = ""  # the texture of the map shown last
         self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
         self.interpolated = True  # what a stopped repeat has not reached is filled
+        self.views: dict[int, Camera] = {}  # kept, by number
+        self._next_views: dict[int, Camera] = {}
         self.turning = False  # the camera goes round, as on a turntable
         self.turned = 0.0  # [degrees] by which it has gone, for the picture alone
         self.framed_for = DEFAULT_PICTURE  # [pixels] the image whose sides stay visible in a narrower window
         self.revision = 0
         self._next: tuple[dict[str, int], Map | None] | None = None  # for a sketch that is being opened
 
-    def restore(self, steps: Mapping[str, int], shown: Map | None, *, later: bool = False) -> None:
+    def restore(
+        self,
+        steps: Mapping[str, int],
+        shown: Map | None,
+        *,
+        views: Mapping[int, Camera] | None = None,
+        later: bool = False,
+    ) -> None:
         """Stop repeats after so many steps, and show a map or, with None, the sketch's own view.
 
-        ``later``: once the sketch that is being opened is drawn.
+        ``views``: the numbered ones that are kept. ``later``: once the sketch that is being opened is drawn.
         """
         if later:
-            self._next = dict(steps), shown
+            self._next, self._next_views = (dict(steps), shown), dict(views or {})
             return
+        if views is not None:
+            self.views = dict(views)
         self.steps.clear()
         self.steps.update(steps)
         self.map = shown
@@ -59,7 +70,7 @@ class View:
             return False
         (steps, shown), self._next = self._next, None
         self.look, self.turning, self.turned = None, False, 0.0
-        self.restore(steps, shown)
+        self.restore(steps, shown, views=self._next_views)
         return True
 
     def forget_next(self) -> None:
