@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
@@ -125,8 +125,7 @@ class TerrainGroup:
         with row(tr("Exaggeration"), note, edited=factor != 1.0):
             wide, style = imgui.calc_item_width() + slots_width(), imgui.get_style()
             start = imgui.get_cursor_pos_x()
-            narrow = ImVec2(style.item_inner_spacing.x, style.frame_padding.y)
-            with styled(sizes={imgui.StyleVar_.frame_padding: narrow}):
+            with _narrow_buttons():
                 for times in (1, 2, 3):
                     if button(f"×{times}###times{times}", tr("{times} times as high", times=times)):
                         session.exaggerate(float(times))
@@ -245,22 +244,30 @@ class TerrainGroup:
         if button(f"{label}###turntable", tr("Goes slowly round the land")):
             session.turn_table(not turns)
         with row(tr("Views"), tr("A click goes there; with Shift, or the right button, it keeps this view")):
-            self._views(session)
+            with _narrow_buttons():
+                self._views(session)
 
     def _views(self, session: Session) -> None:
         for number in VIEWS:
             kept = number in session.view.views
             mark = "●" if kept else ""
             note = tr("View {number}", number=number) if kept else tr("Empty: Shift+click keeps this")
-            pressed = button(f"{number}{mark}###view {number}", note, small=True)
+            pressed = button(f"{number}{mark}###view {number}", note)
             stores = imgui.is_item_clicked(1) or (pressed and imgui.get_io().key_shift)
             if stores:
                 keep_view(session, number)
                 session.notes.append(tr("kept as view {number}", number=number))
             elif pressed and not recall_view(session, number):
                 session.notes.append(tr("view {number} is empty: Shift+click keeps this one", number=number))
-            imgui.same_line()
+            imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
         imgui.new_line()
+
+
+def _narrow_buttons() -> AbstractContextManager[None]:
+    """Draw the block's buttons with less room beside their words, as high as rows are."""
+    style = imgui.get_style()
+    narrow = ImVec2(style.item_inner_spacing.x, style.frame_padding.y)
+    return styled(sizes={imgui.StyleVar_.frame_padding: narrow})
 
 
 @contextmanager
