@@ -54,7 +54,8 @@ class PictureMouse:
             # Keyframes move the camera; a drag begins where it was in the picture that is shown.
             plan, sketch = session.plan, session.sketch
             camera = sketch.camera if by_hand else sketch.at(plan.time).camera
-            session.drafts.set_camera(steered_through(camera, plan.eye, gesture, plan.sketch.camera))
+            seen = steered_through(session.view.seen(camera), plan.eye, gesture, plan.sketch.camera)
+            session.drafts.set_camera(session.view.unseen(seen, camera))
         x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density
         pressed = imgui.is_mouse_down(0)
         session.hover((x, y), pressed=pressed, clicked=imgui.is_mouse_clicked(0))

@@ -320,6 +320,7 @@ class Session:
         """Show the terrain so many times higher than it is."""
         if factor != self.exaggeration:
             self.engine.runner.exaggeration = exaggeration(factor)
+            self.view.exaggeration = self.exaggeration
             self.redraw()
 
     def move_suns(self, across: float, up: float) -> None:

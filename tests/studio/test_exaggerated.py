@@ -9,12 +9,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from playground.engine.camera import look, pan
 from playground.engine.engine import Engine
 from playground.paths import SKETCHES
 from playground.sketch.load import load
 from playground.sketch.map_sketch import map_kernel
+from playground.sketch.model import Camera
 from playground.sketch.techniques import name_of
 from playground.studio.land.exaggerated import LARGEST, exaggeration
+from playground.studio.picture.view import View
 from playground.studio.session import Session
 
 from ..sketch_texts import SMALL_VIEW, passes, use
@@ -109,6 +112,20 @@ def test_a_kernel_of_ones_own_follows_where_it_has_a_direction_of_light(
     session.exaggerate(2.0)
     assert read(session, "rise:rise")[0, 0] == RELIEF
     assert read(session, "lit:lit")[0, 0] == pytest.approx(2 * RELIEF * math.sin(math.radians(45.0)))
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.5])
+def test_the_eye_goes_on_looking_at_the_same_place(factor: float) -> None:
+    view, camera = View(), Camera(azimuth=350.0, target=(10.0, 20.0, 30.0))
+    view.exaggeration, view.turned = factor, 20.0
+    seen = view.seen(camera)
+    assert seen == Camera(azimuth=10.0, target=(10.0, 20.0, 30.0 * factor))
+    assert view.unseen(seen, camera) == camera
+    eye = look(seen, (100.0, 100.0), 40.0 * factor, (320, 180))
+    panned = view.unseen(pan(seen, eye, 0.1, 0.0), camera)
+    assert panned.target is not None and panned.target[2] == pytest.approx(30.0)
+    assert panned.target[:2] != (10.0, 20.0) and panned.azimuth == camera.azimuth
+    assert view.seen(Camera(azimuth=5.0)).target is None
 
 
 def test_the_sea_stays_at_its_shore() -> None:

@@ -16,7 +16,6 @@ import time
 import time as clock
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.engine import Engine
@@ -259,9 +258,9 @@ def _framed(sketch: Sketch, view: View, time: float, size: Size) -> Sketch:
     """Return a sketch at a time as it is shown in a picture of a size."""
     if not traits_of(sketch).camera:
         return sketch
-    if view.turned:
+    if view.turned or view.exaggeration != 1.0:
         now = sketch.at(time)
-        sketch = now.with_camera(replace(now.camera, azimuth=now.camera.azimuth + view.turned))
+        sketch = now.with_camera(view.seen(now.camera))
     return framed(sketch, time, view.framed_for, size)
 
 

@@ -33,6 +33,7 @@ class View:
         self.interpolated = True  # what a stopped repeat has not reached is filled
         self.views: dict[int, Camera] = {}  # kept, by number
         self._next_views: dict[int, Camera] = {}
+        self.exaggeration = 1.0  # how many times higher than it is the terrain is shown
         self.turning = False  # the camera goes round, as on a turntable
         self.turned = 0.0  # [degrees] by which it has gone, for the picture alone
         self.framed_for = DEFAULT_PICTURE  # [pixels] the image whose sides stay visible in a narrower window
@@ -91,6 +92,22 @@ class View:
         """Show the terrain in a look or, with None, by the sketch's own view."""
         self.look = look
         self.revision += 1
+
+    def seen(self, camera: Camera) -> Camera:
+        """Return a camera as it is shown: turned, and looking at the same place of an exaggerated terrain."""
+        if camera.target is not None and self.exaggeration != 1.0:
+            x, y, z = camera.target
+            camera = replace(camera, target=(x, y, z * self.exaggeration))
+        return replace(camera, azimuth=(camera.azimuth + self.turned) % 360.0) if self.turned else camera
+
+    def unseen(self, camera: Camera, before: Camera) -> Camera:
+        """Return the camera that is shown as another, which was moved from where ``before`` is shown."""
+        if camera.target == self.seen(before).target:
+            camera = replace(camera, target=before.target)
+        elif camera.target is not None and self.exaggeration != 1.0:
+            x, y, z = camera.target
+            camera = replace(camera, target=(x, y, z / self.exaggeration))
+        return replace(camera, azimuth=(camera.azimuth - self.turned) % 360.0) if self.turned else camera
 
     def set_map(self, name: str, value: Value) -> None:
         """Set a parameter of the map."""
