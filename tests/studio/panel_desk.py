@@ -12,7 +12,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.engine.engine import Engine
 from playground.studio.bench import Workbench
 from playground.studio.drops import Drops
-from playground.studio.interface import WindowControls
+from playground.studio.interface import Preferences, WindowControls
 from playground.studio.keys import act_on_keys, draw_keymap
 from playground.studio.overlay import draw_drops, draw_inspection
 from playground.studio.panel.panel import Panel
@@ -37,7 +37,13 @@ class Bare:
         self.theme.rescale(scale)
         self.time = 0.0
         self.session = Session(engine, path)
-        self.bench = Workbench(self.session, WindowControls(self._quit), folder=path, now=lambda: self.time)
+        self.bench = Workbench(
+            self.session,
+            WindowControls(self._quit),
+            folder=path,
+            now=lambda: self.time,
+            preferences=Preferences(panes={"terrain": 0.0}),  # folded, so that there is room for what follows
+        )
         self.drops = Drops(self.bench.actions)
         self.panel = Panel()
         self.places: dict[str, tuple[float, float, float, float]] = {}  # by label: x, y, width, height

@@ -29,6 +29,25 @@ float kernel(ivec2 texel) { return float(texel.x) / float(size.x - 1); }
 }
 
 
+@pytest.fixture
+def bare(bare: Bare) -> Bare:
+    """Give a panel whose group Terrain is open, as it is delivered."""
+    bare.bench.panes.as_delivered()
+    bare.run_frames(2)
+    return bare
+
+
+def test_the_group_stays_as_it_was_left(bare: Bare) -> None:
+    bare.click("Terrain###terrain")
+    bare.places.clear()
+    bare.run_frames(2)
+    assert "##land.relief" not in bare.places
+    assert bare.bench.interface.preferences.panes == {"terrain": 0.0}
+    bare.click("Terrain###terrain")
+    bare.run_frames(2)
+    assert "##land.relief" in bare.places
+
+
 def sketch_of(bare: Bare) -> Draft:
     shown = bare.session.shown
     assert shown is not None

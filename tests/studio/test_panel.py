@@ -314,7 +314,6 @@ def test_nothing_reaches_beyond_the_panel(
     folder: Path, open_bare: OpenBare, size: tuple[int, int], scale: float
 ) -> None:
     bare = open_bare(folder, size, scale)
-    bare.click("Terrain###terrain")  # folded, so that there is room for all below it
     bare.session.drafts.set_all({"height.level": 0.75, "height.count": 5, "height.sun": (90.0, 20.0)})
     bare.places.clear()
     bare.run_frames(3)

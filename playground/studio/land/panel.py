@@ -49,6 +49,7 @@ from playground.studio.theme import Theme
 from playground.studio.widgets import WidgetSlot, draw_value, slide
 
 TYPE_ROW = "##land."
+_OPEN = "terrain"  # whether the group is, among what is remembered of panes
 _CLAMP = imgui.SliderFlags_.always_clamp.value
 
 
@@ -75,8 +76,11 @@ class TerrainGroup:
     ) -> None:
         """Draw it; ``rows`` draws the parameters of passes that belong to it."""
         imgui.spacing()
-        flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.allow_overlap
-        opened = header(f"{tr('Terrain')}###terrain", look, flags)
+        before = bool(preferences.panes.get(_OPEN, 1.0))
+        imgui.set_next_item_open(before)
+        opened = header(f"{tr('Terrain')}###terrain", look, imgui.TreeNodeFlags_.allow_overlap)
+        if opened != before:
+            preferences.choose(panes={**preferences.panes, _OPEN: float(opened)})
         imgui.set_item_tooltip(tr("The land: its metres, its sun, its looks, and where it is seen from"))
         plan, draft = session.plan, session.shown
         if not opened or plan is None or draft is None:
