@@ -38,7 +38,7 @@ from playground.sketch.follows import follow, rules_of
 from playground.sketch.model import VARIANTS, Graph, Kernel, PassSpec, PlainFragment, Sketch, Technique, Value
 from playground.sketch.variants import INSIDE, Omission, active_variant, unverified
 from playground.sketch.wiring import (
-    deciding_inputs,
+    found_source,
     initial_names,
     inner,
     input_names,
@@ -272,14 +272,9 @@ class Flattener:
         return outputs.get(expected.rpartition(".")[2], next(iter(outputs.values())))
 
     def _unwired(self, name: str, prefix: str, spec: PassSpec, earlier: list[PassSpec]) -> Source | None:
-        for other in reversed(earlier):
-            if other.name == name:
-                outputs = self.outputs[join(prefix, other.name)]
-                return outputs.get(name, next(iter(outputs.values())))
-        for other in reversed(earlier if name not in deciding_inputs(spec.technique) else []):
-            outputs = self.outputs[join(prefix, other.name)]
-            if name in outputs:
-                return outputs[name]
+        found = found_source(spec.technique, name, earlier)
+        if found is not None:
+            return self.outputs[join(prefix, found[0].name)][found[1]]
         if is_optional(spec.technique, name):
             return None
         candidates = [

@@ -308,6 +308,35 @@ def append(text: str, lines: list[str]) -> str:
     return head + newline + "".join(line + newline for line in lines)
 
 
+def blocks(text: str, name: str) -> list[tuple[int, int]]:
+    """Return where each table of a list begins and ends, as those of ``[[pass]]``.
+
+    The comments right above a table are in its block, and so are tables inside it; the empty lines
+    after it are not.
+    """
+    headers = [(text.rfind("\n", 0, h.start) + 1, h) for h in TomlPlaces(text).headers]
+    spans = []
+    for number, (start, header) in enumerate(headers):
+        if not header.is_list or header.keys != [name]:
+            continue
+        following = (s for s, h in headers[number + 1 :] if h.keys[0] != name or len(h.keys) == 1)
+        end = next((_above(text, s) for s in following), len(text))
+        last = start + len(text[start:end].rstrip())  # the end of the last line that is not empty
+        line_end = text.find("\n", last, end)
+        spans.append((_above(text, start), line_end + 1 if line_end >= 0 else end))
+    return spans
+
+
+def _above(text: str, start: int) -> int:
+    """Return where the comments right above a line begin; the line itself, where there are none."""
+    while start > 0:
+        before = text.rfind("\n", 0, start - 1) + 1
+        if not text[before:start].lstrip().startswith("#"):
+            break
+        start = before
+    return start
+
+
 def newline_of(text: str) -> str:
     """Return how the lines of a text end."""
     return "\r\n" if "\r\n" in text else "\n"

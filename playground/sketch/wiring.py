@@ -355,11 +355,23 @@ def _in_form(
 
 
 def _is_found(technique: Technique, name: str, earlier: Sequence[PassSpec]) -> bool:
-    """Return whether an earlier pass feeds an input that nothing is wired to: see ``flatten``."""
-    if any(spec.name == name for spec in earlier):
-        return True
-    decides = name in deciding_inputs(technique)
-    return not decides and any(name in output_names(spec.technique) for spec in earlier)
+    return found_source(technique, name, earlier) is not None
+
+
+def found_source(technique: Technique, name: str, earlier: Sequence[PassSpec]) -> tuple[PassSpec, str] | None:
+    """Return the earlier pass, and its output, that feed an input that nothing is wired to; else None.
+
+    It is the latest pass of the input's name, else the latest with an output of that name, but for an
+    input by which passes are there.
+    """
+    for spec in reversed(earlier):
+        if spec.name == name:
+            names = output_names(spec.technique)
+            return spec, name if name in names else names[0]
+    for spec in reversed(earlier if name not in deciding_inputs(technique) else ()):
+        if name in output_names(spec.technique):
+            return spec, name
+    return None
 
 
 def _unread(graph: Graph, specs: Sequence[PassSpec], absent: Mapping[str, str]) -> dict[str, str]:

@@ -30,7 +30,7 @@ from playground.sketch.save import (
     written_so_far,
     written_value,
 )
-from playground.sketch.toml_text import KeyPath, TomlPlaces, append, drop, newline_of, put, text_of
+from playground.sketch.toml_text import KeyPath, append, blocks, drop, newline_of, put, text_of
 from playground.studio.notices import Notices
 from playground.studio.session import Session
 
@@ -61,18 +61,18 @@ def save_keyframes(file: Sketch, keyframes: Sequence[Keyframe]) -> None:
 
 def with_keyframes(text: str, file: Sketch, keyframes: Sequence[Keyframe]) -> str:
     """Return a sketch's text, which says what ``file`` does, with these keyframes; they are by time."""
-    if len(blocks_of(text, "keyframe")) != len(file.keyframes):
+    if len(blocks(text, "keyframe")) != len(file.keyframes):
         message = "its keyframes are written as one list; write each as a [[keyframe]] to change them here"
         raise SketchError(message, file=shown(file.file))
     before = _matched(file.keyframes, keyframes)
     for keyframe, index in zip(keyframes, before, strict=True):
         if index is not None:
             text = _changed(text, file, ("keyframe", index), file.keyframes[index], keyframe)
-    spans = blocks_of(text, "keyframe")
-    blocks = [text[start:end] for start, end in spans]
+    spans = blocks(text, "keyframe")
+    written = [text[start:end] for start, end in spans]
     newline = newline_of(text)
     made = [
-        blocks[index] if index is not None else _new_block(file, keyframe, newline)
+        written[index] if index is not None else _new_block(file, keyframe, newline)
         for keyframe, index in zip(keyframes, before, strict=True)
     ]
     if spans:
@@ -84,7 +84,7 @@ def with_keyframes(text: str, file: Sketch, keyframes: Sequence[Keyframe]) -> st
 
 def with_presets(text: str, file: Sketch, order: Sequence[int]) -> str:
     """Return a sketch's text with its presets in another order, without those that are not in ``order``."""
-    spans = blocks_of(text, "preset")
+    spans = blocks(text, "preset")
     if len(spans) != len(file.presets):
         message = "its presets are written as one list; write each as a [[preset]] to change them here"
         raise SketchError(message, file=shown(file.file))
@@ -128,31 +128,6 @@ def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: s
             elif not text[at:].strip():
                 text_placed = text_placed[: -len(newline)]
     return text_placed + text[at:]
-
-
-def blocks_of(text: str, kind: str) -> list[tuple[int, int]]:
-    """Return where each block of a kind, as "keyframe", begins and ends, without the empty lines after it."""
-    headers = [(text.rfind("\n", 0, h.start) + 1, h) for h in TomlPlaces(text).headers]
-    spans = []
-    for number, (start, header) in enumerate(headers):
-        if not header.is_list or header.keys != [kind]:
-            continue
-        following = (s for s, h in headers[number + 1 :] if h.keys[0] != kind or len(h.keys) == 1)
-        end = next((_above(text, s) for s in following), len(text))
-        last = start + len(text[start:end].rstrip())  # the end of the last line that is not empty
-        line_end = text.find("\n", last, end)
-        spans.append((_above(text, start), line_end + 1 if line_end >= 0 else end))
-    return spans
-
-
-def _above(text: str, start: int) -> int:
-    """Return where the comments right above a line begin; the line itself, where there are none."""
-    while start > 0:
-        before = text.rfind("\n", 0, start - 1) + 1
-        if not text[before:start].lstrip().startswith("#"):
-            break
-        start = before
-    return start
 
 
 def _matched(keyframes_in_file: Sequence[Keyframe], keyframes: Sequence[Keyframe]) -> list[int | None]:
