@@ -28,6 +28,7 @@ from playground.sketch.save import table_of, with_view, write_over
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_text import KeyPath, blocks, drop, key_text, newline_of, put, text_of
 from playground.sketch.wiring import (
+    as_wired,
     found_source,
     input_names,
     is_optional,
@@ -136,7 +137,7 @@ def _muted(graph: Graph, name: str) -> Graph:
         instead = passed_on(graph, name, wire.output) if wire.giver == name else None
         if instead is not None:
             changed[wire.reader, wire.input] = instead.source
-    return replace(graph, passes=_rewired(graph.passes, changed)) if changed else graph
+    return as_wired(replace(graph, passes=_rewired(graph.passes, changed))) if changed else graph
 
 
 # ── edits ─────────────────────────────────────────────────────────────────────

@@ -99,8 +99,8 @@ def choices(sketch: Sketch, pass_name: str) -> list[str]:
     spec = _pass(sketch, pass_name)
     outputs = set(output_names(spec.technique))
     whole = [name for name in shipped_names() if not is_part(name)]
-    own = _own_names(sketch)
-    read = _reader(sketch)
+    own = own_names(sketch)
+    read = reader_of(sketch)
     uses = dict.fromkeys([*whole, *own, spec.use])
     return [use for use in uses if use == spec.use or _fits(sketch, spec, use, outputs, read)]
 
@@ -114,14 +114,14 @@ def fits(sketch: Sketch, pass_name: str, use: str) -> bool:
     spec = _pass(sketch, pass_name)
     if use == spec.use:
         return True
-    named = use in _own_names(sketch) or (use in shipped_names() and not is_part(use))
-    return named and _fits(sketch, spec, use, set(output_names(spec.technique)), _reader(sketch))
+    named = use in own_names(sketch) or (use in shipped_names() and not is_part(use))
+    return named and _fits(sketch, spec, use, set(output_names(spec.technique)), reader_of(sketch))
 
 
 @looking_once()
 def nearest_fitting(sketch: Sketch, pass_name: str, use: str) -> str:
     """Suggest the one of ``choices`` that was probably meant, as ``errors.nearest`` does."""
-    names = sorted({*_own_names(sketch), *(name for name in shipped_names() if not is_part(name))})
+    names = sorted({*own_names(sketch), *(name for name in shipped_names() if not is_part(name))})
     for close in get_close_matches(use, names, n=len(names), cutoff=0.55):
         if fits(sketch, pass_name, close):
             return nearest(use, [close])
@@ -137,7 +137,7 @@ def with_technique(sketch: Sketch, pass_name: str, use: str) -> Sketch:
     spec = _pass(sketch, pass_name)
     if use == spec.use:
         return sketch
-    return _refilled(sketch, spec, use, _reader(sketch)(use))
+    return _refilled(sketch, spec, use, reader_of(sketch)(use))
 
 
 def _pass(sketch: Sketch, name: str) -> PassSpec:
@@ -149,13 +149,13 @@ def _pass(sketch: Sketch, name: str) -> PassSpec:
     return spec
 
 
-def _reader(sketch: Sketch) -> Callable[[str], Technique]:
+def reader_of(sketch: Sketch) -> Callable[[str], Technique]:
     """Return what reads what ``use`` names in a sketch's folder, each technique once."""
     folder, techniques = Path(sketch.folder), Techniques()
     return lambda use: techniques.read(use, folder, folder)
 
 
-def _own_names(sketch: Sketch) -> list[str]:
+def own_names(sketch: Sketch) -> list[str]:
     """Name the files in the sketch's folder that could be techniques; library files and sketches as well."""
     files = [p for p in Path(sketch.folder).glob("*.*") if p.suffix in TECHNIQUES and str(p) != sketch.file]
     return sorted({f"./{p.stem}" for p in files if p.is_file()})

@@ -24,6 +24,7 @@ from playground.engine.plan import Plan
 from playground.engine.unfinished import SourceUnfinished
 from playground.errors import ContextError, PlaygroundError
 from playground.sketch.assign import find_targets, resolve
+from playground.sketch.edit_passes import without_muted
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map, refs_of
 from playground.sketch.model import Camera, Graph, Sketch, Value
@@ -392,6 +393,7 @@ class Session:
         engine.options.patience = float("inf")  # loops run to their end
         try:
             sketch = self.view.map.base_of(self.sketch) if self.view.map is not None else self.sketch
+            sketch = without_muted(sketch, self.view.muted)
             return engine.read(sketch, ref, time=now, steps=stops, interpolated=fills)
         except (PlaygroundError, SourceUnfinished) as error:
             self.notes.append(str(error))
@@ -509,7 +511,7 @@ class Session:
             self.exaggerate(1.0)
         self.last_reload = Reload(self._now() - drafts.started, drafts.sandbox_seconds)
         drafts.drawn_well()
-        is_other = self.view.map is not None or self.view.look is not None
+        is_other = bool(self.view.map is not None or self.view.look is not None or self.view.muted)
         is_other |= self.exaggeration != exaggeration_before
         self._drawn = None if is_other else self._picture_key(size)
 
@@ -527,6 +529,7 @@ class Session:
                 self.view.map = shown = None
             if shown is None and self.view.look is not None and not self.view.look.fits(sketch):
                 self.view.look = None  # its heights are gone
+            sketch = without_muted(sketch, self.view.muted)
             seen = shown or self.view.look
             self._draw(seen.of(sketch) if seen else sketch, size, **how)
             self.drafts.draw_error = None

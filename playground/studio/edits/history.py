@@ -27,14 +27,23 @@ MAX_ENTRIES = 200
 
 KEYFRAMES = "keyframes"
 FILES = "files"
+TEXT = "text"
 
 Key = tuple[str, str]
 """What can change: ("value", path), ("technique", pass), ("channel", path), ("lock", path), ("step", path),
-("camera", ""), ("keyframes", ""), ("files", "") or ("time", "")."""
+("camera", ""), ("keyframes", ""), ("files", ""), ("text", "") or ("time", "")."""
 CHECKED = ("technique", "channel")
 """The kinds that are shown only once they have proved good."""
 State = Mapping[Key, object]
 """What is set, by what it is; what is as the file says is not in it."""
+
+
+@dataclass(frozen=True)
+class TextChange:
+    """A change of the sketch's text, as a step has it for one way."""
+
+    of: str
+    to: str
 
 
 @dataclass(frozen=True)
@@ -169,7 +178,8 @@ class History:
         if not apply(values):
             return False
         self.done, self._open = self.done + by, False
-        self._due |= {key: value for key, value in values.items() if key[0] not in (KEYFRAMES, FILES, "time")}
+        left_out = (KEYFRAMES, FILES, TEXT, "time")
+        self._due |= {key: value for key, value in values.items() if key[0] not in left_out}
         return True
 
     def saved(self, before: State) -> None:

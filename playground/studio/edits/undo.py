@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.studio.clock import stepped, toggle_loop
-from playground.studio.edits.history import FILES, KEYFRAMES, History, State, steps_of
+from playground.studio.edits.history import FILES, KEYFRAMES, TEXT, History, State, TextChange, steps_of
 from playground.studio.notices import Notices
 from playground.studio.paint.painting import Painting
 from playground.studio.reload.stages import ReloadStage
@@ -127,12 +127,15 @@ class Undo:
         """Set what a step changed; return False, with a notice, where that is refused."""
         session = self.session
         keyframes, time = changes.get((KEYFRAMES, "")), changes.get(("time", ""))
+        text = changes.get((TEXT, ""))
         if session.shown is None:
             return False
         if isinstance(keyframes, tuple) and not self.file.write_keyframes(keyframes):
             return False
         texts = changes.get((FILES, ""))
         if isinstance(texts, FileTexts) and not self.file.write_texts(texts):
+            return False
+        if isinstance(text, TextChange) and not self.file.change_text(text):
             return False
         if not session.drafts.apply(changes):
             return False

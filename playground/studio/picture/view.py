@@ -30,6 +30,7 @@ class View:
         self.look: Look | None = None  # drawn instead of the sketch's own view, where no map is
         self.last_ref = ""  # the texture of the map shown last
         self.steps: dict[str, int] = {}  # repeats that are stopped early, by path
+        self.muted: frozenset[str] = frozenset()  # passes that let through what they are made of
         self.interpolated = True  # what a stopped repeat has not reached is filled
         self.views: dict[int, Camera] = {}  # kept, by number
         self._next_views: dict[int, Camera] = {}
@@ -70,6 +71,7 @@ class View:
         if self._next is None:
             return False
         (steps, shown), self._next = self._next, None
+        self.muted = frozenset()
         self.look, self.turning, self.turned = None, False, 0.0
         self.restore(steps, shown, views=self._next_views)
         return True
@@ -120,6 +122,11 @@ class View:
         self.steps.pop(path, None)
         if step is not None:
             self.steps[path] = step
+
+    def mute(self, name: str, on: bool) -> None:
+        """Draw as if a pass were not there, with what it is made of in its place; or no longer."""
+        self.revision += 1
+        self.muted = self.muted | {name} if on else self.muted - {name}
 
     def interpolate(self, on: bool) -> None:
         """Fill what stopped repeats have not reached, where their headers say how, or show it as it is."""

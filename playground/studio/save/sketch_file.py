@@ -12,6 +12,7 @@ import stat
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
+from difflib import SequenceMatcher
 from itertools import pairwise
 from operator import attrgetter
 from pathlib import Path
@@ -21,6 +22,7 @@ from playground.files import partial_file, read_regular, reason, writing
 from playground.paths import GLSL, shown
 from playground.shader.parameter import shortest
 from playground.sketch.keyframes import EASES
+from playground.sketch.load import load
 from playground.sketch.model import Camera, Keyframe, Sketch, Value
 from playground.sketch.save import (
     ReadOnlySketch,
@@ -31,6 +33,7 @@ from playground.sketch.save import (
     written_value,
 )
 from playground.sketch.toml_text import KeyPath, append, blocks, drop, newline_of, put, text_of
+from playground.studio.edits.history import TextChange
 from playground.studio.notices import Notices
 from playground.studio.session import Session
 
@@ -273,6 +276,23 @@ class SketchFile:
             return True
         return False
 
+    def change_text(self, change: TextChange) -> bool:
+        """Change the text, also where the file has changed elsewhere since; return whether that worked."""
+        draft = self.session.shown
+        if draft is None:
+            return False
+        path = Path(draft.file.file)
+
+        def changed(text: str) -> str:
+            new = merged(text, change)
+            if new is None:
+                raise SketchError(
+                    "the same lines were edited since, so they stay as they are", file=shown(path)
+                )
+            return new
+
+        return self.write(lambda: write_over(path, load(path), changed, lambda _: True))
+
     def write_keyframes(self, keyframes: Sequence[Keyframe]) -> bool:
         """Write keyframes into the file; return whether that worked."""
         draft = self.session.shown
@@ -281,3 +301,20 @@ class SketchFile:
     def write_texts(self, texts: FileTexts) -> bool:
         """Write several files, or none; return whether that worked."""
         return self.write(lambda: write_texts(texts))
+
+
+def merged(text: str, change: TextChange) -> str | None:
+    """Return a text with a change made to it; None where the same lines differ from what that is of."""
+    if text == change.of:
+        return change.to
+    old = change.of.splitlines(keepends=True)
+    edits: list[tuple[int, int, list[str]]] = []
+    for new in (change.to.splitlines(keepends=True), text.splitlines(keepends=True)):
+        codes = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
+        edits += [(i, j, new[a:b]) for kind, i, j, a, b in codes if kind != "equal"]
+    edits.sort(key=lambda edit: edit[:2])
+    if any(later[0] < earlier[1] or later[:1] == earlier[:1] for earlier, later in pairwise(edits)):
+        return None
+    for start, end, lines in reversed(edits):
+        old[start:end] = lines
+    return "".join(old)
