@@ -43,6 +43,7 @@ from playground.studio.draw import Area, tooltip_waits
 from playground.studio.drops import Drops, opened_from
 from playground.studio.edits.autosave import QUIET, Autosave, memory_of
 from playground.studio.edits.memory import Remembered
+from playground.studio.graph.panel import passes_tab
 from playground.studio.guard import Guard
 from playground.studio.interface import WindowControls, remembered_preferences
 from playground.studio.keyframes.panel import height_of_timeline
@@ -243,6 +244,7 @@ class Live:
             trace_sandbox=tracer,
         )
         choose_language(preferences.language)
+        self.bench.tabs.append(passes_tab(self.bench))
         self.panes = PaneLayout(self.bench.panes)
         self.drops = Drops(self.bench.actions)
         self.guard = Guard(self.bench.notices.say)

@@ -14,6 +14,7 @@ from playground.studio.code.editors import Opener
 from playground.studio.code.open_files import OpenFiles
 from playground.studio.edits.autosave import Autosave
 from playground.studio.edits.undo import Undo
+from playground.studio.graph.edits import PassEdits
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.interface import Interface, Panes, Preferences, Tab, WindowControls
 from playground.studio.keyframes.keyframe_edits import KeyframeEdits
@@ -58,6 +59,7 @@ class Workbench:
         self.undo = Undo(session, self.notices, self.painting, self.file)
         self.actions = Actions(session, self.notices, self.undo, self.file, folder)
         self.keyframes = KeyframeEdits(session, self.notices, self.undo, self.file)
+        self.passes = PassEdits(session, self.notices, self.undo, self.file)
         self.files = OpenFiles(self.notices, opener or Opener())
         self.interface = Interface(preferences=preferences or Preferences())
         self.start = StartPage(self.actions, more=self._cards)
@@ -75,6 +77,12 @@ class Workbench:
         """Yield what rooms add to the start page."""
         for addition in self.additions:
             yield from addition.start_cards()
+
+    def toggle_passes(self) -> None:
+        """Open the strip at the passes, which get the keys, or close it."""
+        graph = self.inspection.graph
+        self.panes.show_strip("passes", shown=not graph.on)
+        graph.gets_keys = not graph.on
 
     def take_notes(self) -> None:
         """Show what the session and the editors report, and remove notices that are over."""

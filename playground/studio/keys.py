@@ -81,8 +81,8 @@ def _open(bench: Workbench) -> Iterator[Layer]:
         yield f"editor {editing.text.path.name}", partial(ask_to_close, editing, bench.files)
     if bench.tracing.on:
         yield "trace", bench.tracing.toggle
-    if inspection.graph.on:
-        yield "graph", inspection.graph.toggle
+    if inspection.graph.has_keys:
+        yield "passes", inspection.graph.leave
     if inspection.inspector.on:
         yield "inspector", inspection.inspector.toggle
     if bench.painting.on:
@@ -139,7 +139,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.i, "I", _INSPECT, lambda b: b.inspection.inspector.toggle()),
     Key(_K.t, "T", _TRACE, lambda b: b.tracing.toggle()),
     Key(_K.a, "A", "keep this as A and compare; or no longer", lambda b: b.inspection.compare.toggle()),
-    Key(_K.g, "G", "the passes as a graph, or no longer", lambda b: b.inspection.graph.toggle()),
+    Key(_K.g, "G", "the passes as a graph, or no longer", lambda b: b.toggle_passes()),
     Key(_K.b, "B", "take the brush, or put it down", lambda b: b.painting.toggle()),
     Key(_K.none, "[", _BRUSH, lambda b: b.painting.resize(-1), letter="[", brush=True),
     Key(_K.none, "]", _BRUSH, lambda b: b.painting.resize(1), letter="]", brush=True),
@@ -262,6 +262,8 @@ def act_on_keys(bench: Workbench) -> None:
             close_one(bench)
         return
     if keeps_keys(bench.interface.ahead) or io.want_text_input or io.key_alt:
+        return
+    if bench.inspection.graph.took_key:
         return
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         return

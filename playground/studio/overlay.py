@@ -13,7 +13,6 @@ from playground.studio.channels.channels import source_label
 from playground.studio.compare.panel import draw_ab
 from playground.studio.draw import Area, plate, plate_size
 from playground.studio.drops import Drops, is_terrain
-from playground.studio.graph.panel import draw_graph
 from playground.studio.inspect.inspector import Inspector
 from playground.studio.inspect.panel import draw_values
 from playground.studio.keyframes.panel import draw_timeline
@@ -127,12 +126,11 @@ def draw_inspection(
     bench: Workbench, picture: moderngl.Texture | None, look: Theme, area: Area, density: float
 ) -> None:
     """Draw all of it that is on; ``picture`` is what the session's last ``frame`` returned."""
-    session, inspection = bench.session, bench.inspection
+    inspection = bench.inspection
     if picture is not None:
         inspection.compare.follow(picture)
-    inspection.graph.update(bench.notices.now())  # before it is drawn: what is released is not shown
-    draw_exaggeration(session, look, area)
-    draw_graph(session, inspection, look, area)
+    inspection.graph.end()
+    draw_exaggeration(bench.session, look, area)
     draw_ab(inspection.compare, bench.undo, look, area)
     draw_timeline(bench.undo, bench.interface, look, area)
     if picture is not None:

@@ -16,6 +16,7 @@ from playground.studio.interface import Preferences, WindowControls
 from playground.studio.keys import act_on_keys, draw_keymap
 from playground.studio.overlay import draw_drops, draw_inspection
 from playground.studio.panel.panel import Panel
+from playground.studio.panes import PaneLayout
 from playground.studio.problems.panel import ErrorsList
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -46,6 +47,7 @@ class Bare:
         )
         self.drops = Drops(self.bench.actions)
         self.panel = Panel()
+        self.panes = PaneLayout(self.bench.panes)
         self.places: dict[str, tuple[float, float, float, float]] = {}  # by label: x, y, width, height
         self._watched: list[tuple[object, str, object]] = []
         for owner, name in (
@@ -173,6 +175,10 @@ class Bare:
         left = self.panel.draw(self.bench, self.theme)
         room = imgui.get_io().display_size
         area = left, 0.0, max(room.x - left, 1.0), room.y
+        if self.bench.tabs:
+            places = self.panes.place(left, self.bench.tabs, self.theme)
+            self.panes.draw_strip(places, self.bench.tabs, self.theme)
+            area = places.picture
         draw_inspection(self.bench, self.picture, self.theme, area, 48 / area[2])
         draw_drops(self.drops, self.theme)
         draw_keymap(self.bench.interface, self.theme)

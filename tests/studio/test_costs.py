@@ -335,7 +335,8 @@ def test_who_looks_at_every_pass_sees_every_pass(harness: Harness, tool: str) ->
     harness.run_frames()
     engine = harness.session.engine
     assert "low" not in engine.record.results
-    getattr(harness.bench.inspection, tool).on = True
+    inspection = harness.bench.inspection
+    inspection.graph.touched, inspection.inspector.on = tool == "graph", tool == "inspector"
     harness.run_frames()
     harness.run_frames()
     assert set(engine.record.results) == {"low", "height", "view"}
@@ -357,7 +358,7 @@ def test_passes_that_fail_are_requested_once(harness: Harness, monkeypatch: pyte
         raise ContextError("no")
 
     monkeypatch.setattr(harness.session.engine, "draw", fails)
-    harness.bench.inspection.graph.on = True
+    harness.bench.inspection.graph.touched = True
     for _ in range(5):
         harness.run_frames()
     assert len(tries) == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +11,10 @@ from imgui_bundle import imgui
 
 from playground.engine.textures import read_raw
 from playground.paths import SKETCHES
-from playground.studio.graph.graph import (
-    SIDE,
-    THUMBNAIL_INTERVAL,
-    Thumbnails,
-    node_grid,
-    picture_of,
-    wiring_of,
-)
+from playground.studio.graph.edits import Catalogue
+from playground.studio.graph.graph import SIDE, THUMBNAIL_INTERVAL, Thumbnails, picture_of, wiring_of
+from playground.studio.graph.layout import LANE, Layout, layout_of, nearest_node
+from playground.studio.graph.panel import passes_tab
 
 from ..loading import load
 from ..sketch_texts import passes
@@ -57,21 +54,42 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_pass_is_right_of_all_that_it_reads() -> None:
+def overlaps(layout: Layout) -> list[tuple[object, object]]:
+    """Return the nodes and lanes of a column that touch."""
+    boxes: dict[int, list[tuple[float, float, object]]] = {}
+    for node, (column, y) in layout.places.items():
+        boxes.setdefault(column, []).append((y - 0.5, y + 0.5, node))
+    for lane, y in layout.lanes.items():
+        boxes.setdefault(lane[1], []).append((y - LANE / 2, y + LANE / 2, lane))
+    pairs = [(a, b) for column in boxes.values() for a, b in combinations(column, 2)]
+    return [(a[2], b[2]) for a, b in pairs if a[0] < b[1] - 1e-9 and b[0] < a[1] - 1e-9]
+
+
+def test_wires_go_to_the_right_and_around_the_nodes() -> None:
     random = np.random.default_rng(5)
     for _ in range(30):
         nodes = [f"n{k}" for k in range(int(random.integers(1, 14)))]
         edges = [(a, b) for k, b in enumerate(nodes) for a in nodes[:k] if random.random() < 0.3]
-        places = node_grid(nodes, edges)
-        assert set(places) == set(nodes) and len(set(places.values())) == len(nodes)
-        for node in nodes:
-            before = [places[a][0] for a, b in edges if b == node]
-            assert places[node][0] == max(before, default=-1) + 1
+        layout = layout_of(nodes, edges)
+        assert set(layout.places) == set(nodes) and not overlaps(layout)
+        for giver, reader in edges:
+            first, last = layout.places[giver][0], layout.places[reader][0]
+            assert first < last and [c for c, _ in layout.route((giver, reader))] == [*range(first + 1, last)]
+        assert min(y - 0.5 for _, y in layout.places.values()) > -1e-9
 
 
 def test_rows_are_in_the_order_of_what_they_are_joined_to() -> None:
-    places = node_grid(("a", "b", "c", "d"), (("a", "d"), ("b", "c")))
-    assert places["a"][1] < places["b"][1] and places["d"][1] < places["c"][1]  # no two edges cross
+    places = layout_of(("a", "b", "c", "d"), (("a", "d"), ("b", "c"))).places
+    assert (places["a"][1] < places["b"][1]) == (places["d"][1] < places["c"][1])  # no two edges cross
+
+
+def test_arrows_lead_to_the_nearest_node_of_a_side() -> None:
+    layout = layout_of(("a", "b", "c", "d"), (("a", "b"), ("a", "c"), ("b", "d"), ("c", "d")))
+    assert nearest_node(layout, "a", -1, 0) == "a" and nearest_node(layout, "", 1, 0) == "a"
+    assert nearest_node(layout, "a", 1, 0) in "bc" and nearest_node(layout, "d", -1, 0) in "bc"
+    high, low = sorted("bc", key=lambda node: layout.places[node][1])
+    assert nearest_node(layout, high, 0, 1) == low and nearest_node(layout, low, 0, -1) == high
+    assert nearest_node(layout, low, 0, 1) == low
 
 
 def test_a_sketch_s_passes_and_their_wires() -> None:
@@ -89,6 +107,8 @@ def test_a_sketch_s_passes_and_their_wires() -> None:
         ("colour", "view"),
         ("light", "view"),
     }
+    assert outer.inputs["colour"] == ("height",) and outer.outputs["view"] == ()
+    assert outer.input_for("height", "height", "view") == "height"
     inner = wiring_of(load(SKETCHES / "jacksboro.toml"), inner=True)
     assert ("view.sky", "view.land") in inner.edges and len(inner.refs) > 10
     assert all(path in ref for path, ref in inner.refs.items())
@@ -99,7 +119,8 @@ def test_a_sketch_s_passes_and_their_wires() -> None:
 def test_every_sketch_that_ships_has_a_graph(path: Path) -> None:
     for inner in (False, True):
         wiring = wiring_of(load(path), inner=inner)
-        assert all(wiring.places[a][0] < wiring.places[b][0] for a, b in wiring.edges)
+        places = wiring.layout.places
+        assert all(places[a][0] < places[b][0] for a, b in wiring.edges) and not overlaps(wiring.layout)
 
 
 def test_a_thumbnail_is_what_its_texture_shows(folder: Path, open_session: OpenSession) -> None:
@@ -157,28 +178,238 @@ def test_numbers_that_are_none_are_magenta() -> None:
     ]
 
 
-def test_a_click_shows_a_texture_and_another_the_view(bare: Bare) -> None:
-    graph = bare.bench.inspection.graph
-    bare.run_frames(5)
-    assert graph.thumbnails.made == 0 and "node colour" not in bare.places
+@pytest.fixture
+def passes_bare(bare: Bare) -> Bare:
+    """Give a panel with the strip's tab of the passes open, and the keys in it."""
+    bare.bench.tabs.append(passes_tab(bare.bench))
+    bare.bench.panes.show_strip(shown=False)
+    bare.run_frames(3)
     bare.key(imgui.Key.g)
     bare.run_frames(40)
-    assert graph.thumbnails.made == 3 and bare.bench.inspection.patience(0.0) > 1e6
-    bare.click("node colour")
-    assert bare.session.view.map is not None and bare.session.view.map.ref == "colour:colour"
-    bare.click("node view")
-    assert bare.session.view.map is None
+    return bare
+
+
+def settle(bare: Bare) -> None:
+    """Draw until what was written is shown."""
+    bare.run_frames(4)
+
+
+def text_of(bare: Bare) -> str:
+    return (bare.session.path).read_text(encoding="utf-8")
+
+
+def names_of(bare: Bare) -> list[str]:
+    assert bare.session.sketch is not None
+    return [spec.name for spec in bare.session.sketch.graph.passes]
+
+
+def test_g_opens_the_passes_and_closes_them(passes_bare: Bare) -> None:
+    bare, graph = passes_bare, passes_bare.bench.inspection.graph
+    assert graph.on and graph.has_keys and graph.thumbnails.made == 3
+    assert bare.bench.inspection.patience(0.0) > 1e6
     bare.key(imgui.Key.g)
     bare.run_frames(3)
+    assert not graph.on and not graph.has_keys
     assert graph.thumbnails.get("height:height") is None  # all of them are given back
 
 
-def test_passes_are_timed_only_on_request(bare: Bare) -> None:
-    bare.key(imgui.Key.g)
+def test_a_click_chooses_and_a_double_click_shows(passes_bare: Bare) -> None:
+    bare, graph = passes_bare, passes_bare.bench.inspection.graph
+    bare.click("node colour")
+    assert graph.chosen == "colour" and bare.session.view.map is None
+    bare.click("node colour", times=2)
+    assert bare.session.view.map is not None and bare.session.view.map.ref == "colour:colour"
+    bare.click("node view", times=2)
+    assert bare.session.view.map is None
+    bare.click("node height")
+    bare.click("S height")
+    assert bare.session.view.map is not None and bare.session.view.map.ref == "height:height"
+    bare.click("S height")
+    assert bare.session.view.map is None and text_of(bare) == SKETCH
+
+
+def test_all_is_done_by_keys_and_undone_byte_for_byte(passes_bare: Bare) -> None:
+    bare, graph, key = passes_bare, passes_bare.bench.inspection.graph, imgui.Key
+    bare.key(key.right_arrow)
+    assert graph.chosen == "height"
+    bare.key(key.d)
+    settle(bare)
+    assert graph.chosen == "height_2" and names_of(bare) == ["height", "height_2", "colour", "view"]
+    texts = [SKETCH, text_of(bare)]
+    bare.key(key.mod_ctrl, key.right_arrow)
+    settle(bare)
+    assert names_of(bare) == ["height", "colour", "height_2", "view"]
+    texts.append(text_of(bare))
+    bare.key(key.w)
+    assert graph.pulled == ("height_2", "height")
+    while graph.chosen != "view":
+        bare.key(key.right_arrow)
+    bare.key(key.enter)
+    settle(bare)
+    assert bare.session.sketch is not None
+    assert ("height", "height_2") in dict(bare.session.sketch.graph.passes[-1].inputs).items()
+    texts.append(text_of(bare))
+    graph.chosen = "height"
+    bare.key(key.delete)
+    settle(bare)
+    assert names_of(bare) == ["colour", "height_2", "view"] and not graph.chosen
+    texts.append(text_of(bare))
+    assert len(set(texts)) == 5
+    for before in reversed(texts[:-1]):
+        bare.key(key.mod_ctrl, key.z)
+        settle(bare)
+        assert text_of(bare) == before
+    for after in texts[1:]:
+        bare.key(key.mod_ctrl, key.y)
+        settle(bare)
+        assert text_of(bare) == after
+
+
+def test_keys_of_the_window_are_its_own_again_after_esc(passes_bare: Bare) -> None:
+    bare = passes_bare
+    bare.key(imgui.Key.escape)
+    assert not bare.bench.inspection.graph.has_keys
+    bare.key(imgui.Key.m)
+    assert bare.session.view.map is not None and text_of(bare) == SKETCH
+
+
+def test_an_undo_leaves_what_was_edited_elsewhere(passes_bare: Bare) -> None:
+    bare = passes_bare
+    assert bare.bench.passes.duplicate("colour") == "colour_2"
+    settle(bare)
+    text = text_of(bare)
+    bare.session.path.write_text("# mine\n" + text, encoding="utf-8")
+    bare.session.drafts.reload()
+    settle(bare)
+    bare.bench.undo.undo()
+    settle(bare)
+    assert text_of(bare) == "# mine\n" + SKETCH
+    bare.bench.undo.redo()
+    settle(bare)
+    clash = text_of(bare).replace('name = "colour_2"', 'name = "other"')
+    bare.session.path.write_text(clash, encoding="utf-8")
+    bare.session.drafts.reload()
+    settle(bare)
+    bare.bench.undo.undo()
+    settle(bare)
+    assert text_of(bare) == clash and any("edited" in note.text for note in bare.bench.notices.items)
+
+
+def test_edits_in_a_row_do_not_wait_for_the_picture(passes_bare: Bare) -> None:
+    edits = passes_bare.bench.passes
+    assert edits.duplicate("height") == "height_2" and edits.duplicate("height_2") == "height_3"
+    assert edits.delete("height_2")
+    settle(passes_bare)
+    assert names_of(passes_bare) == ["height", "height_3", "colour", "view"]
+
+
+def test_a_wire_is_dragged_and_one_that_closes_a_circle_refused(
+    passes_bare: Bare, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bare, edits = passes_bare, passes_bare.bench.passes
+    edits.duplicate("height")
+    settle(bare)
+    bare.bench.inspection.graph.leave()
+    tooltips: list[str] = []
+    monkeypatch.setattr(imgui, "set_tooltip", tooltips.append)
+
+    def drag(giver: str, reader: str) -> None:
+        bare.run_frames(3)
+        x, y, wide, high = bare.places[f"node {giver}"]
+        imgui.get_io().add_mouse_pos_event(x + wide + 6, y + high / 2)
+        bare.run_frames(2)
+        bare.press(True)
+        assert bare.bench.inspection.graph.pulled == (giver, "height")
+        x, y, wide, high = bare.places[f"node {reader}"]
+        for share in (0.2, 0.5):
+            imgui.get_io().add_mouse_pos_event(x + share * wide, y + high / 2)
+            bare.run_frames(2)
+        bare.press(False)
+        settle(bare)
+
+    drag("height_2", "view")
+    assert bare.session.sketch is not None
+    assert dict(bare.session.sketch.graph.passes[-1].inputs)["height"] == "height_2"
+    text = text_of(bare)
+    drag("height_2", "height")
+    assert text_of(bare) == text and any("input" in words for words in tooltips)
+
+
+def test_a_wire_let_go_in_the_empty_asks_what_to_add(passes_bare: Bare) -> None:
+    bare, graph = passes_bare, passes_bare.bench.inspection.graph
+    x, y, wide, high = bare.places["node colour"]
+    imgui.get_io().add_mouse_pos_event(x + wide + 6, y + high / 2)
+    bare.run_frames(2)
+    bare.press(True)
+    left, top, _, _ = bare.places["canvas"]
+    imgui.get_io().add_mouse_pos_event(left + 20, top + 10)
+    bare.run_frames(2)
+    bare.press(False)
+    assert graph.chooser.on and (graph.chooser.after, graph.chooser.output) == ("colour", "colour")
+    bare.key(imgui.Key.escape)
+    bare.key(imgui.Key.escape)
+    assert not graph.chooser.on and text_of(bare) == SKETCH
+
+
+def test_the_chooser_adds_what_is_searched_for_behind_a_node(passes_bare: Bare) -> None:
+    bare, graph = passes_bare, passes_bare.bench.inspection.graph
+    bare.key(imgui.Key.right_arrow)
+    imgui.get_io().add_input_character(ord("+"))
+    bare.run_frames(4)
+    assert graph.chooser.on
+    bare.type("smoo")
     bare.run_frames(3)
-    assert not bare.session.engine.options.profiling
-    bare.click("Time each pass")
+    assert graph.chooser.search == "smoo"
+    assert graph.entries(graph.wiring(bare.session.sketch))[0].use == "generation/smooth"
+    bare.key(imgui.Key.enter)
+    settle(bare)
+    assert names_of(bare) == ["height", "smooth", "colour", "view"] and graph.chosen == "smooth"
+    assert dict(bare.session.sketch.graph.passes[-1].inputs) == {"height": "smooth"}
+
+
+def test_what_goes_on_from_an_output_is_offered_first() -> None:
+    catalogue = Catalogue()
+    catalogue.begin(load(SKETCHES / "mixed.toml"))
+    wanted = ["erosion/thermal", "texturing/height_blend", "generation/fbm", "lighting/mean_filter"]
+    for use in wanted:
+        catalogue.go_on(use, 0.0)
+    assert [entry.use for entry in catalogue.found("", ("height",))] == wanted
+    assert [e.use for e in catalogue.found("noise", ())] == []
+    assert all(entry.title for entry in catalogue.entries.values())
+
+
+def test_a_muted_pass_is_left_out_of_the_picture_and_stays_in_the_file(passes_bare: Bare) -> None:
+    bare, edits = passes_bare, passes_bare.bench.passes
+    edits.add("generation/smooth", "height")
+    settle(bare)
+    ran = bare.session.engine.runs["smooth"]
+    edits.mute("smooth")
+    settle(bare)
+    plan = bare.session.plan
+    assert plan is not None and "smooth" in bare.session.view.muted
+    assert not any(path.startswith("smooth") for path in bare.session.engine.record.results)
+    edits.mute("smooth")
+    settle(bare)
+    assert not bare.session.view.muted and bare.session.engine.runs["smooth"] >= ran
+    edits.mute("height")
+    bare.run_frames(2)
+    assert not bare.session.view.muted and "height" in bare.bench.notices.items[-1].text
+
+
+def test_a_shipped_sketch_is_offered_as_a_copy(open_bare: OpenBare) -> None:
+    bare = open_bare(SKETCHES / "fbm.toml")
+    assert bare.bench.passes.duplicate("height") == ""
+    assert bare.bench.file.asks and "playground itself" in bare.bench.file.offer
+    assert not bare.bench.undo.history.can_undo
+
+
+def test_passes_are_timed_while_their_graph_is_shown(passes_bare: Bare) -> None:
+    bare = passes_bare
     assert bare.session.engine.options.profiling
+    bare.click("Time each pass###timed")
+    bare.run_frames(2)
+    assert not bare.session.engine.options.profiling
+    bare.click("Time each pass###timed")
     bare.key(imgui.Key.g)
     bare.run_frames(3)
     assert not bare.session.engine.options.profiling
@@ -189,24 +420,27 @@ def test_the_panel_s_head_has_a_button_for_it_and_room_for_all(
     open_bare: OpenBare, folder: Path, scale: float
 ) -> None:
     bare = open_bare(folder, (1920, 1080), scale)
+    bare.bench.tabs.append(passes_tab(bare.bench))
     bare.run_frames()
     margin = imgui.get_style().window_padding.x
     for label in "Undo Redo History Random A/B Reset Copy Save PNG Graph".split():
         x, _, width, _ = bare.places[label]
         assert margin <= x and x + width <= bare.panel.width * scale - margin, label
     graph = bare.bench.inspection.graph
-    bare.click("Graph")
     assert graph.on
     bare.click("Graph")
     assert not graph.on
+    bare.click("Graph")
+    assert graph.on
 
 
-def test_a_node_says_why_its_pass_ran_last(bare: Bare, monkeypatch: pytest.MonkeyPatch) -> None:
-    bare.key(imgui.Key.g)
+def test_a_node_says_why_its_pass_ran_last(passes_bare: Bare, monkeypatch: pytest.MonkeyPatch) -> None:
+    bare = passes_bare
     bare.session.drafts.set("colour.tint", (0.1, 0.2, 0.3))
     bare.run_frames(40)  # thumbnails are drawn meanwhile, which is no picture
     tooltips: list[str] = []
     monkeypatch.setattr(imgui, "set_tooltip", tooltips.append)
     for node, why in (("height", "the pass"), ("colour", "value tint"), ("view", "input colour")):
-        bare.point(f"node {node}")
+        bare.point(f"node {node}", 0.3)
+        bare.run_frames(60)
         assert tooltips[-1].endswith(f"\nLast ran: {why}")

@@ -13,6 +13,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.studio.addition import Addition, Layer
 from playground.studio.code.panel import draw_code
+from playground.studio.graph.panel import passes_tab
 from playground.studio.guard import Guard
 from playground.studio.interface import SIZES, Preferences, remembered_preferences
 from playground.studio.keys import all_keys, open_layers
@@ -150,11 +151,13 @@ def test_one_layer_at_a_time_and_then_none(layers_bare: Bare, tmp_path: Path) ->
     bench.additions = [Guest()]
     bench.inspection.compare.keep()
     bench.inspection.inspector.toggle()
-    bench.inspection.graph.toggle()
+    bench.tabs.append(passes_tab(bench))
+    layers_bare.run_frames()
+    bench.inspection.graph.has_keys = True
     bench.files.open(tmp_path / "terrain.glsl", here=True)
     bench.interface.toggle_keymap()
     layers_bare.run_frames(3)
-    names = ["keys", "dialog", "editor terrain.glsl", "graph", "inspector", "A/B", "full screen", "guest"]
+    names = ["keys", "dialog", "editor terrain.glsl", "passes", "inspector", "A/B", "full screen", "guest"]
     for n in range(len(names)):
         assert open_layers(bench) == names[n:]
         escape(layers_bare)
@@ -165,14 +168,14 @@ def test_one_layer_at_a_time_and_then_none(layers_bare: Bare, tmp_path: Path) ->
 
 
 def test_popups_and_the_lists_in_them_close_before_all_else(layers_bare: Bare) -> None:
-    layers_bare.bench.inspection.graph.toggle()
+    layers_bare.bench.inspection.inspector.toggle()
     for label in ("History", "Random", "Reset", "##preset", "##shown"):
         layers_bare.click(label)
         assert "popup" in open_layers(layers_bare.bench), label
         escape(layers_bare)
-        assert open_layers(layers_bare.bench) == ["graph"], label
+        assert open_layers(layers_bare.bench) == ["inspector"], label
     layers_bare.click("##height.level", button=1)
-    assert open_layers(layers_bare.bench) == ["popup", "graph"]
+    assert open_layers(layers_bare.bench) == ["popup", "inspector"]
     escape(layers_bare)
     escape(layers_bare)
     assert open_layers(layers_bare.bench) == []

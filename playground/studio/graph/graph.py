@@ -1,15 +1,12 @@
-"""The passes of a sketch as a graph: which reads which, and where each is drawn.
+"""The passes of a sketch as a graph: which reads which, what is chosen in it, and thumbnails of its textures.
 
-A pass is one column right of the last that it reads, as in Sugiyama, Tagawa and Toda
-1981, "Methods for Visual Understanding of Hierarchical System Structures"; within a column
-passes are put in the order of the middle of those that they are joined to.
-
-Thumbnails of its textures are drawn small by the graphics card, only when stale, one at a time.
+Thumbnails are drawn small by the graphics card, only when stale, one at a time.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import tomllib
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -18,20 +15,22 @@ from numpy.typing import NDArray
 
 from playground.engine.textures import make_texture
 from playground.errors import counted
+from playground.paths import SKETCHES
 from playground.shader.colours import linear_to_srgb
 from playground.shader.own_shaders import own_shader
+from playground.sketch.edit_passes import Wire, closes_circle, wires_of
 from playground.sketch.flat import Fed, Flat, Ref, leaves_of
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Sketch
+from playground.sketch.wiring import input_names
+from playground.studio.graph.edits import Catalogue, Entry, outputs_of
+from playground.studio.graph.layout import Edge, Layout, layout_of, nearest_node
 from playground.studio.picture.full_screen import TexelShader
 from playground.studio.session import Session, Version
+from playground.studio.start.thumbnails import place_of, read_atlas, thumbnails
 
 if TYPE_CHECKING:
     import moderngl
-
-Edge = tuple[str, str]
-"""From who gives to who reads."""
-_SWEEPS = 4
 
 
 @dataclass(frozen=True)
@@ -39,24 +38,53 @@ class Wiring:
     """A sketch's passes as a graph with a layout."""
 
     refs: Mapping[str, str]  # each node's texture, "pass:output", by the node's path; in the order they run
-    edges: tuple[Edge, ...]
-    places: Mapping[str, tuple[int, int]]  # column from the left, row from above
+    wires: tuple[Wire, ...]
+    layout: Layout
+    inputs: Mapping[str, tuple[str, ...]]  # the pins at each node's left
+    outputs: Mapping[str, tuple[str, ...]]  # and at its right, the main one first
+
+    @property
+    def edges(self) -> tuple[Edge, ...]:
+        """From who gives to who reads."""
+        return tuple(dict.fromkeys((wire.giver, wire.reader) for wire in self.wires))
+
+    def input_for(self, giver: str, output: str, reader: str) -> str:
+        """Return the input that a wire dropped on a node feeds: of its name, else free, else the first."""
+        names = self.inputs.get(reader, ())
+        taken = {wire.input for wire in self.wires if wire.reader == reader}
+        free = next((name for name in names if name not in taken), "")
+        return output if output in names else free or next(iter(names), "")
 
 
 def wiring_of(sketch: Sketch, *, inner: bool) -> Wiring:
     """Return the graph of a sketch's own passes, or of all passes that run, those inside techniques."""
     flat = flatten(sketch)
-    refs: dict[str, str] = {}
+    nodes = [leaf.path if inner else leaf.path.partition(".")[0] for leaf in leaves_of(flat.nodes)]
+    refs = {node: _main(flat, node) for node in nodes}
+    if inner:
+        wires = _inner_wires(flat)
+        inputs: dict[str, tuple[str, ...]] = {w.reader: ("",) for w in wires}
+        outputs: dict[str, tuple[str, ...]] = {w.giver: ("",) for w in wires}
+    else:
+        wires = tuple(wire for wire in wires_of(sketch.graph) if wire.giver != wire.reader)
+        inputs, outputs = {}, {}
+        for spec in sketch.graph.passes:
+            written = [wire.input for wire in wires if wire.reader == spec.name]
+            inputs[spec.name] = tuple(dict.fromkeys([*input_names(spec.technique), *written]))
+            outputs[spec.name] = outputs_of(spec) if spec.name != "view" else ()
+    edges = tuple(dict.fromkeys((wire.giver, wire.reader) for wire in wires))
+    return Wiring(refs, wires, layout_of(tuple(refs), edges), inputs, outputs)
+
+
+def _inner_wires(flat: Flat) -> tuple[Wire, ...]:
+    """Return the wires between the kernels that run, of each two one."""
     edges: dict[Edge, None] = {}
     for leaf in leaves_of(flat.nodes):
-        node = leaf.path if inner else leaf.path.partition(".")[0]
-        refs.setdefault(node, _main(flat, node))
         for _, source in leaf.inputs:
             giver = _giver(flat, source)
-            giver = giver if inner else giver.partition(".")[0]
-            if giver and giver != node and not isinstance(source, Fed):
-                edges[giver, node] = None
-    return Wiring(refs, tuple(edges), node_grid(tuple(refs), tuple(edges)))
+            if giver and giver != leaf.path and not isinstance(source, Fed):
+                edges[giver, leaf.path] = None
+    return tuple(Wire(giver, "", reader, "", giver, False) for giver, reader in edges)
 
 
 def cost_of(session: Session, node: str) -> tuple[str, bool, float | None]:
@@ -69,30 +97,6 @@ def cost_of(session: Session, node: str) -> tuple[str, bool, float | None]:
     spent = [session.times[path] for path in inside if path in session.times]
     runs = counted(sum(engine.runs[path] for path in inside), "run")
     return runs, any(path in inside for path in engine.record.ran), sum(spent) if spent else None
-
-
-def node_grid(nodes: Sequence[str], edges: Sequence[Edge]) -> dict[str, tuple[int, int]]:
-    """Return a column and a row for each node; every edge goes to the right, no two nodes share a place.
-
-    The nodes are in an order in which each comes after those that it reads.
-    """
-    column = dict.fromkeys(nodes, 0)
-    for node in nodes:
-        column[node] = max((column[giver] + 1 for giver, reader in edges if reader == node), default=0)
-    columns = [[n for n in nodes if column[n] == c] for c in range(max(column.values(), default=-1) + 1)]
-    row = {node: float(r) for each in columns for r, node in enumerate(each)}
-    for sweep in range(_SWEEPS):
-        for each in columns if sweep % 2 == 0 else columns[::-1]:
-            middles = {node: _middle(node, edges, row, sweep % 2) for node in each}
-            each.sort(key=lambda node: middles[node])
-            row |= {node: float(r) for r, node in enumerate(each)}
-    return {node: (c, r) for c, each in enumerate(columns) for r, node in enumerate(each)}
-
-
-def _middle(node: str, edges: Sequence[Edge], row: Mapping[str, float], backwards: int) -> float:
-    """Return the mean row of those on one side that a node is joined to; its own where there is none."""
-    near = [row[edge[backwards]] for edge in edges if edge[1 - backwards] == node]
-    return sum(near) / len(near) if near else row[node]
 
 
 def _giver(flat: Flat, source: object) -> str:
@@ -207,44 +211,188 @@ def picture_of(values: NDArray[np.float32], components: int, *, encoded: bool) -
     return np.rint(np.clip(whole, 0, 1) * 255).astype(np.uint8)
 
 
+class Pictures:
+    """Pictures of techniques: of the shipped sketch named like one, else of the least that uses it."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self._cells: dict[str, int] | None = None  # by technique: its place in the atlas
+        self._atlas: moderngl.Texture | None = None
+
+    @property
+    def cells(self) -> Mapping[str, int]:
+        """The place in the atlas of each technique that has a picture."""
+        if self._cells is None:
+            self._cells = _cells()
+        return self._cells
+
+    def get(self, use: str) -> tuple[moderngl.Texture, tuple[float, float, float, float]] | None:
+        """Return a texture, and what of it shows a technique: left, top, right, bottom; None without one."""
+        cell = self.cells.get(use, -1)
+        if cell < 0:
+            return None
+        if self._atlas is None:
+            try:
+                pixels = np.asarray(read_atlas())
+            except OSError:
+                self._cells = {}
+                return None
+            size = pixels.shape[1], pixels.shape[0]
+            ctx = self.session.engine.ctx
+            self._atlas = ctx.texture(size, 3, pixels.tobytes(), alignment=1)
+            self._atlas.filter = ctx.LINEAR, ctx.LINEAR
+        return self._atlas, place_of(cell, self._atlas.size)
+
+    def release(self) -> None:
+        """Release the atlas."""
+        atlas, self._atlas = self._atlas, None
+        if atlas is not None:
+            atlas.release()
+
+
+def _cells() -> dict[str, int]:
+    """Return the place in the atlas of each technique's picture."""
+    found: dict[str, tuple[bool, int, int]] = {}
+    for row in thumbnails():
+        table = tomllib.loads((SKETCHES / f"{row.name}.toml").read_text("utf-8"))
+        passes = table.get("pass", [])
+        for spec in (*passes, table.get("view", {})) if row.cell >= 0 else ():
+            use = str(spec.get("use", ""))
+            mine = use.rpartition("/")[2] != row.name, len(passes), row.cell
+            found[use] = min(found.get(use, mine), mine)
+    return {use: cell for use, (_, _, cell) in found.items()}
+
+
 # ── the window ────────────────────────────────────────────────────────────────
 
 
 @dataclass
+class Chooser:
+    """The list of techniques that may be added."""
+
+    after: str = ""  # behind which pass; "" before the view
+    output: str = ""  # that the wire let go in the empty was pulled from; "" where there was none
+    search: str = ""
+    marked: int = 0  # the entry that Enter adds
+    opens: bool = False  # it is to open in the next frame
+    on: bool = False
+    catalogue: Catalogue = field(default_factory=Catalogue)
+
+    def open(self, sketch: Sketch, after: str, output: str = "") -> None:
+        """Open it behind a pass."""
+        self.after, self.output, self.search, self.marked = after, output, "", 0
+        self.opens = self.on = True
+        self.catalogue.begin(sketch)
+
+    def outputs(self, wiring: Wiring) -> tuple[str, ...]:
+        """Return what the new pass may go on from."""
+        return (self.output,) if self.output else wiring.outputs.get(self.after, ())
+
+
+@dataclass
 class Graph:
-    """The window of the passes."""
+    """The tab of the passes."""
 
     session: Session
-    on: bool = False
     inner: bool = False  # passes inside techniques, too
-    timed: bool = False
+    timed: bool | None = None  # each pass is timed; None: while the picture is still
+    chosen: str = ""  # the node that keys act on
+    has_keys: bool = False  # the keys are the graph's
+    gets_keys: bool = False  # as soon as the tab is drawn
+    took_key: bool = False  # in this frame it has used one
+    touched: bool = False  # the graph was used: its textures are wanted
+    pulled: tuple[str, str] | None = None  # pass and output of a wire that is begun
+    by_keys: bool = False  # it was begun by a key
+    chooser: Chooser = field(default_factory=Chooser)
+    _drawn: bool = False
+    _on: bool = False
     _stale: bool = False
     _wiring: tuple[object, bool, Wiring] | None = None  # of which sketch's passes, with those inside
     thumbnails: Thumbnails = field(init=False)
+    pictures: Pictures = field(init=False)
 
     def __post_init__(self) -> None:
-        self.thumbnails = Thumbnails(self.session)
+        self.thumbnails, self.pictures = Thumbnails(self.session), Pictures(self.session)
 
-    def toggle(self) -> None:
-        """Show or hide the passes."""
-        self.on = not self.on
+    @property
+    def on(self) -> bool:
+        """Whether the tab was on the screen in the last frame."""
+        return self._on
+
+    @property
+    def sketch(self) -> Sketch | None:
+        """The sketch whose passes are drawn: what is shown, or, at once, what is being checked."""
+        drafts = self.session.drafts
+        latest = drafts.latest
+        return latest.sketch if latest is not None else drafts.sketch
 
     def wiring(self, sketch: Sketch) -> Wiring:
         """Return the graph of a sketch; worked out once for each."""
         if self._wiring is None or self._wiring[0] is not sketch.graph or self._wiring[1] != self.inner:
             self._wiring = sketch.graph, self.inner, wiring_of(sketch, inner=self.inner)
+            if self.chosen not in self._wiring[2].refs:
+                self.chosen = ""
         return self._wiring[2]
 
-    def update(self, now: float) -> None:
-        """Draw one stale thumbnail; release all while the graph is hidden."""
-        sketch = self.session.sketch
-        if not self.on or sketch is None:
-            self._stale = False
-            self.thumbnails.release()
-        else:
-            self._stale = self.thumbnails.refresh(self.wiring(sketch).refs.values(), now)
+    def leave(self) -> None:
+        """Give the keys back to the window; a wire that was begun is let go."""
+        self.has_keys, self.pulled = False, None
+
+    def is_refused(self, giver: str, reader: str) -> bool:
+        """Return whether a wire from one pass to another would close a circle."""
+        sketch = self.sketch
+        return sketch is None or closes_circle(sketch.graph, giver, reader)
+
+    def step(self, across: int, down: int) -> None:
+        """Choose the next node to one side; with none chosen, the first."""
+        if self._wiring is not None:
+            self.chosen = nearest_node(self._wiring[2].layout, self.chosen, across, down)
+
+    def entries(self, wiring: Wiring) -> list[Entry]:
+        """Return what may be added, best first; of equals what shipped sketches show."""
+        chooser = self.chooser
+        return chooser.catalogue.found(chooser.search, chooser.outputs(wiring), self.pictures.cells)
+
+    @property
+    def times(self) -> bool:
+        """Whether passes are timed while the tab is on the screen."""
+        session = self.session
+        return self.timed if self.timed is not None else not (session.animated and session.clock.playing)
+
+    def begin(self, now: float) -> Wiring | None:
+        """Begin to draw the tab: draw one stale thumbnail, and return the graph; None without a sketch.
+
+        ``now``: seconds of any clock.
+        """
+        self._drawn = self._on = True
+        self.took_key = False
+        if self.gets_keys:
+            self.has_keys, self.touched, self.gets_keys = True, True, False
+        sketch = self.sketch
+        if sketch is None:
+            return None
+        wiring = self.wiring(sketch)
+        self._stale = self.thumbnails.refresh(wiring.refs.values(), now)
+        return wiring
+
+    def end(self) -> None:
+        """End a frame: where the tab was not drawn in it, it has no keys, and its pictures are released."""
+        self._on, self._drawn = self._drawn, False
+        if not self._on:
+            self.has_keys = self.took_key = self.touched = self._stale = self.chooser.on = False
+            self.release()
+
+    def release(self) -> None:
+        """Release all pictures; they are made again where they are needed."""
+        self.thumbnails.release()
+        self.pictures.release()
 
     @property
     def waits(self) -> bool:
         """Whether thumbnails are still to be drawn."""
-        return self.on and self._stale
+        return self._on and self._stale
+
+    @property
+    def reads(self) -> bool:
+        """Whether the chooser still reads techniques."""
+        return self._on and self.chooser.on and not self.chooser.catalogue.is_whole

@@ -1,139 +1,682 @@
-"""The window of the passes as a graph: thumbnails, runs, times; a click shows a texture from above."""
+"""The tab of the passes: their graph, drawn by ourselves so that it is crisp at every zoom.
+
+The wheel zooms, a drag moves the graph; it fits its pane until then, and again after F. A click chooses a
+node, a double click shows its texture from above. A drag from an output to an input wires; let go in the
+empty, it asks what to add there. With the keys, which a click gives the graph and Esc takes away, all of
+that is done as well.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.sketch.edit_passes import Wire
 from playground.studio import theme
-from playground.studio.cost.costs import RunReasons
-from playground.studio.draw import QUIET, Area, fitting, styled
-from playground.studio.graph.graph import Thumbnails, Wiring, cost_of
-from playground.studio.inspect.inspection import Inspection
+from playground.studio.bench import Workbench
+from playground.studio.draw import button, ctrl_held, disabled, fitting, letters
+from playground.studio.graph.chooser_panel import draw_chooser
+from playground.studio.graph.graph import Graph, Wiring, cost_of
+from playground.studio.interface import Tab
+from playground.studio.language import tr
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 
-_THUMB = 84.0
-_WIDE, _GAP_X, _GAP_Y = 108.0, 46.0, 16.0
+_WIDE, _HIGH = 172.0, 64.0  # of a node [units at zoom 1]
+_STEP_X = _WIDE + 54.0
+_THUMB = 54.0
+_TEXT = 78.0  # where a node's text begins
+_MOST = 1.25  # a graph that fits is never drawn larger
+_ZOOMS = (0.15, 3.0)
+_LEGIBLE = 0.45  # of the zoom: below, nothing is written
+_NEAR = 8.0  # [units] that the mouse may be away from a pin or a wire
+_F = imgui.ButtonFlags_
+
+
+def passes_tab(bench: Workbench) -> Tab:
+    """Return the strip's tab of the passes."""
+    panel = GraphPanel(bench)
+    return Tab("passes", "Passes", panel.draw)
 
 
 @dataclass
-class _Drawing:
-    """What every node in one frame uses."""
+class _Canvas:
+    """Where the graph is in its pane: from units of the layout to the window's."""
 
-    wiring: Wiring
-    session: Session
-    thumbnails: Thumbnails
-    reasons: RunReasons
-    look: Theme
-    origin: ImVec2
-    high: float = 0.0
-    boxes: dict[str, tuple[float, float]] = field(default_factory=dict)  # each node's corner
+    corner: ImVec2
+    room: ImVec2
+    zoom: float
+    pan: tuple[float, float]
+    scale: float
 
+    @property
+    def k(self) -> float:
+        """Window units of a unit of the graph."""
+        return self.zoom * self.scale
 
-def draw_graph(session: Session, inspection: Inspection, look: Theme, area: Area) -> None:
-    """Draw it while it is open."""
-    graph, sketch = inspection.graph, session.sketch
-    if not graph.on or sketch is None:
-        return
-    x, y, wide, high = area
-    scale, margin = look.scale, 30 * look.scale
-    imgui.set_next_window_pos(ImVec2(x + margin, y + margin), imgui.Cond_.appearing)
-    size = ImVec2(max(wide - 2 * margin, 200.0), max(min(0.62 * high, high - 2 * margin), 160.0))
-    imgui.set_next_window_size(size, imgui.Cond_.appearing)
-    flags = QUIET | imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.horizontal_scrollbar
-    ground, rounding = theme.colour(theme.palette.ground, 0.95), 8 * scale
-    with styled({imgui.Col_.window_bg: ground}, {imgui.StyleVar_.window_rounding: rounding}):
-        visible, stays = imgui.begin("Passes###graph", True, flags)
-        graph.on = bool(stays)
-        if visible:
-            _switches(inspection)
-            corner = imgui.get_cursor_screen_pos()
-            lines = 3 if session.engine.options.profiling else 2
-            high = (_THUMB + 8) * scale + lines * imgui.get_text_line_height()
-            wiring, reasons = graph.wiring(sketch), inspection.reasons
-            _nodes(_Drawing(wiring, session, graph.thumbnails, reasons, look, corner, high))
-        imgui.end()
+    def place(self, x: float, y: float) -> ImVec2:
+        return ImVec2(self.corner.x + self.pan[0] + x * self.k, self.corner.y + self.pan[1] + y * self.k)
+
+    def holds(self, point: ImVec2) -> bool:
+        x, y = point.x - self.corner.x, point.y - self.corner.y
+        return 0 <= x < self.room.x and 0 <= y < self.room.y
 
 
-def _switches(inspection: Inspection) -> None:
-    graph = inspection.graph
-    _, graph.inner = imgui.checkbox("Inside techniques", graph.inner)
-    imgui.same_line()
-    _, graph.timed = imgui.checkbox("Time each pass", graph.timed)
-    if graph.timed:
-        inspection.costs_shown = True
-    imgui.same_line()
-    imgui.text_disabled("a click shows a texture from above")
+@dataclass
+class _Pins:
+    """Where the pins of the nodes are, by pass and name."""
+
+    inputs: dict[tuple[str, str], ImVec2] = field(default_factory=dict)
+    outputs: dict[tuple[str, str], ImVec2] = field(default_factory=dict)
 
 
-def _nodes(drawing: _Drawing) -> None:
-    wiring, scale, origin = drawing.wiring, drawing.look.scale, drawing.origin
-    step = (_WIDE + _GAP_X) * scale, drawing.high + _GAP_Y * scale
-    for node, (column, row) in wiring.places.items():
-        drawing.boxes[node] = origin.x + column * step[0], origin.y + row * step[1]
-    draw = imgui.get_window_draw_list()
-    for giver, reader in wiring.edges:
-        (x0, y0), (x1, y1) = drawing.boxes[giver], drawing.boxes[reader]
-        start = ImVec2(x0 + _WIDE * scale, y0 + drawing.high / 2)
-        end, bend = ImVec2(x1, y1 + drawing.high / 2), _GAP_X * scale
-        first, second = ImVec2(start.x + bend, start.y), ImVec2(end.x - bend, end.y)
-        draw.add_bezier_cubic(start, first, second, end, theme.packed(theme.palette.line), 2 * scale)
-        draw.add_circle_filled(end, 3 * scale, theme.packed(theme.palette.dim))
-    for node, ref in wiring.refs.items():
-        _node(node, ref, drawing)
+@dataclass(frozen=True)
+class _Node:
+    """One node in a frame."""
+
+    name: str
+    ref: str  # its texture
+    at: tuple[float, float]  # its upper left corner [units of the graph]
+    is_hovered: bool
+    is_muted: bool
+    is_shown: bool
 
 
-def _node(node: str, ref: str, drawing: _Drawing) -> None:
-    session, thumbnails, scale = drawing.session, drawing.thumbnails, drawing.look.scale
-    x, y = drawing.boxes[node]
-    corner, far = ImVec2(x, y), ImVec2(x + _WIDE * scale, y + drawing.high)
-    imgui.set_cursor_screen_pos(corner)
-    is_view = node.partition(".")[0] == "view"
-    if imgui.invisible_button(f"node {node}", ImVec2(far.x - x, far.y - y)):
-        session.show(None if is_view else ref)
-    hovered = imgui.is_item_hovered()
-    if hovered:
-        imgui.set_tooltip("\n".join(filter(None, [_tooltip(node, session), drawing.reasons.text(node)])))
-    shown = session.view.map.ref == ref if session.view.map is not None else node == "view"
-    draw = imgui.get_window_draw_list()
-    draw.add_rect_filled(
-        corner, far, theme.packed(theme.palette.raised if hovered else theme.palette.field), 6 * scale
-    )
-    if shown:
-        draw.add_rect(corner, far, theme.packed(theme.palette.accent), 6 * scale, 2 * scale)
-    left, top = x + (_WIDE - _THUMB) / 2 * scale, y + 6 * scale
-    low, high = ImVec2(left, top), ImVec2(left + _THUMB * scale, top + _THUMB * scale)
-    texture = thumbnails.get(ref)
-    if texture is None:
-        draw.add_rect(low, high, theme.packed(theme.palette.line))
-    else:
-        dim = 1.0 if thumbnails.is_current(ref) else 0.45  # of another picture than the last
-        tint = theme.packed((1.0, 1.0, 1.0), dim)
+class GraphPanel:
+    """Draws the graph of one window, and does what is asked for in it."""
+
+    def __init__(self, bench: Workbench) -> None:
+        self._bench = bench
+        self._zoom, self._pan = 1.0, (0.0, 0.0)
+        self._fits = True  # until the graph is moved or zoomed by hand
+        self._wire: tuple[str, str] | None = None  # the wire that is chosen: reader and input
+        self._menu = ""  # the node whose menu is open
+
+    @property
+    def graph(self) -> Graph:
+        """What is chosen in it."""
+        return self._bench.inspection.graph
+
+    def draw(self, look: Theme) -> None:
+        """Draw the tab in the current window."""
+        graph, bench = self.graph, self._bench
+        wiring = graph.begin(bench.notices.now())
+        if wiring is None:
+            return
+        if graph.times:
+            bench.inspection.costs_shown = True
+        self._switches(look, wiring)
+        corner, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
+        if room.x < 20 or room.y < 20:
+            return
+        canvas = self._canvas(corner, room, wiring, look.scale)
+        draw = imgui.get_window_draw_list()
+        draw.push_clip_rect(corner, ImVec2(corner.x + room.x, corner.y + room.y), True)
+        self._ground(canvas, wiring)
+        pins = _pins_of(wiring, canvas)
+        lit = self._wires(wiring, canvas, pins)
+        for node in wiring.refs:
+            self._draw_node(node, wiring, canvas, look)
+        if not graph.inner:
+            self._pull(wiring, canvas, pins)
+        self._pin_marks(wiring, canvas, pins)
+        if lit is not None and imgui.is_mouse_clicked(0):
+            self._wire, graph.chosen = (lit.reader, lit.input), ""
+        if graph.has_keys:
+            edge = ImVec2(corner.x + room.x - 1, corner.y + room.y - 1)
+            draw.add_rect(ImVec2(corner.x + 1, corner.y + 1), edge, theme.packed(theme.palette.accent, 0.7))
+        draw.pop_clip_rect()
+        self._draw_menu(wiring)
+        draw_chooser(bench, wiring, look)
+        self._keys(wiring)  # after it: the "+" that opens it is no letter of its search
+
+    # ── the pane ─────────────────────────────────────────────────────────────
+
+    def _switches(self, look: Theme, wiring: Wiring) -> None:
+        graph = self.graph
+        with disabled(graph.inner):
+            if button(
+                f"+ {tr('Pass')}###add pass", tr("Add a pass before the view; + on a node adds one behind it")
+            ):
+                self._ask("")
+        imgui.same_line()
+        if button(f"{tr('Fit')}###fit", tr("Fit the graph to its pane (F)")):
+            self._fits = True
+        imgui.same_line()
+        _, graph.inner = imgui.checkbox(f"{tr('Inside techniques')}###inner", graph.inner)
+        imgui.same_line()
+        changed, timed = imgui.checkbox(f"{tr('Time each pass')}###timed", graph.times)
+        if changed:
+            graph.timed = timed
+        imgui.same_line()
+        imgui.align_text_to_frame_padding()
+        if graph.pulled is not None and graph.by_keys:
+            words = tr(
+                "Wire from {name}: arrows choose a pass, Enter joins, Esc lets go", name=graph.pulled[0]
+            )
+        elif graph.has_keys:
+            words = tr(
+                "Arrows, Enter shows, + adds, W wires, M mutes, D duplicates, Del deletes, Ctrl+arrows move"
+            )
+        else:
+            words = tr(
+                "Click: choose. Double click: show. Drag from a pin: wire. Right click: all that can be done"
+            )
+        room = imgui.get_content_region_avail().x
+        imgui.text_disabled(fitting(words, room))
+        if fitting(words, room) != words:
+            imgui.set_item_tooltip(words)
+
+    def _canvas(self, corner: ImVec2, room: ImVec2, wiring: Wiring, scale: float) -> _Canvas:
+        if self._fits:
+            columns, high = wiring.layout.size
+            wide, high = max(columns, 1) * _STEP_X - (_STEP_X - _WIDE), max(high, 1.0) * _HIGH
+            fit = min((room.x - 24 * scale) / wide, (room.y - 12 * scale) / high) / scale
+            self._zoom = min(max(fit, _ZOOMS[0]), _MOST)
+            k = self._zoom * scale
+            self._pan = (room.x - wide * k) / 2, (room.y - high * k) / 2
+        return _Canvas(corner, room, self._zoom, self._pan, scale)
+
+    def _ground(self, canvas: _Canvas, wiring: Wiring) -> None:
+        """Take what is done to the pane itself: zoom, move, give the keys."""
+        graph, io = self.graph, imgui.get_io()
+        imgui.set_next_item_allow_overlap()
+        imgui.invisible_button("canvas", canvas.room, _F.mouse_button_left | _F.mouse_button_middle)
+        inside = canvas.holds(io.mouse_pos) and imgui.is_window_hovered(
+            imgui.HoveredFlags_.allow_when_blocked_by_active_item
+        )
+        if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
+            self._fits = True
+        if imgui.is_item_active() and (io.mouse_delta.x or io.mouse_delta.y) and graph.pulled is None:
+            self._pan = self._pan[0] + io.mouse_delta.x, self._pan[1] + io.mouse_delta.y
+            self._fits = False
+        if inside and io.mouse_wheel:
+            self._magnify(
+                1.15**io.mouse_wheel, io.mouse_pos.x - canvas.corner.x, io.mouse_pos.y - canvas.corner.y
+            )
+        if inside:
+            graph.touched = True
+        if imgui.is_mouse_clicked(0) and not imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
+            graph.has_keys = inside
+            if inside:
+                self._wire, graph.chosen = None, _node_at(wiring, canvas, io.mouse_pos)
+
+    def _magnify(self, by: float, x: float, y: float) -> None:
+        new = min(max(self._zoom * by, _ZOOMS[0]), _ZOOMS[1])
+        ratio = new / self._zoom
+        self._pan = x - (x - self._pan[0]) * ratio, y - (y - self._pan[1]) * ratio
+        self._zoom, self._fits = new, False
+
+    # ── wires ────────────────────────────────────────────────────────────────
+
+    def _wires(self, wiring: Wiring, canvas: _Canvas, pins: _Pins) -> Wire | None:
+        """Draw the wires; return the one under the mouse."""
+        mouse, near = imgui.get_mouse_pos(), None
+        hovers = canvas.holds(mouse) and imgui.is_window_hovered() and self.graph.pulled is None
+        over = _node_at(wiring, canvas, mouse)
+        lines = [(wire, _line(wire, wiring, canvas, pins)) for wire in wiring.wires]
+        if hovers and not over and not self.graph.inner:
+            reach = _NEAR * canvas.scale * 0.7
+            near = next((wire for wire, points in lines if _distance(points, mouse) < reach), None)
+        muted = self._bench.session.view.muted
+        for wire, points in lines:
+            chosen = self._wire == (wire.reader, wire.input)
+            touches = self.graph.chosen in (wire.giver, wire.reader) and bool(self.graph.chosen)
+            ink = (
+                theme.palette.accent
+                if wire is near or chosen
+                else theme.palette.ink
+                if touches
+                else theme.palette.dim
+            )
+            alpha = 0.35 if {wire.giver, wire.reader} & muted else 0.9
+            thick = (3.0 if chosen or wire is near else 2.0) * max(min(canvas.zoom, 1.2), 0.5) * canvas.scale
+            draw = imgui.get_window_draw_list()
+            draw.add_polyline([*points], theme.packed(ink, alpha), thick, imgui.ImDrawFlags_.none)
+        if near is not None:
+            source = f"{near.giver}:{near.output}" if near.output else near.source
+            note = tr("found by its name") if not near.is_written else tr("Del takes it away")
+            imgui.set_tooltip(f"{source} → {near.reader}.{near.input}\n{note}")
+        return near
+
+    def _pull(self, wiring: Wiring, canvas: _Canvas, pins: _Pins) -> None:
+        """Draw the wire that is pulled from an output, and join or ask where it is let go."""
+        graph, mouse = self.graph, imgui.get_mouse_pos()
+        hovers = canvas.holds(mouse) and imgui.is_window_hovered(
+            imgui.HoveredFlags_.allow_when_blocked_by_active_item
+        )
+        out = _nearest(pins.outputs, mouse, _NEAR * canvas.scale) if hovers else None
+        if graph.pulled is None:
+            if out is not None and imgui.is_mouse_clicked(0):
+                graph.pulled, graph.by_keys = out, False
+                graph.chosen = out[0]
+            return
+        start = pins.outputs.get(graph.pulled)
+        if start is None:
+            graph.pulled = None
+            return
+        giver, output = graph.pulled
+        target = (
+            _nearest(pins.inputs, mouse, 1.6 * _NEAR * canvas.scale) if hovers and not graph.by_keys else None
+        )
+        over = graph.chosen if graph.by_keys else _node_at(wiring, canvas, mouse)
+        if target is None and over and over != giver:
+            target = over, wiring.input_for(giver, output, over)
+        refused = target is not None and (not target[1] or graph.is_refused(giver, target[0]))
+        end = (
+            pins.inputs.get(target, mouse) if target is not None else (mouse if not graph.by_keys else start)
+        )
+        ink = theme.packed(theme.palette.alarm if refused else theme.palette.accent)
+        bend = max(0.5 * abs(end.x - start.x), 26 * canvas.k)
+        draw = imgui.get_window_draw_list()
+        points = ImVec2(start.x + bend, start.y), ImVec2(end.x - bend, end.y)
+        draw.add_bezier_cubic(start, *points, end, ink, 3 * canvas.scale)
+        if refused and target is not None:
+            self._say_refusal(giver, target)
+        elif target is not None:
+            imgui.set_tooltip(f"{giver}:{output} → {target[0]}.{target[1]}")
+        if not graph.by_keys and not imgui.is_mouse_down(0):
+            graph.pulled = None
+            if target is not None and not refused:
+                self._bench.passes.wire(giver, output, *target)
+            elif (
+                target is None
+                and hovers
+                and not over
+                and _distance([start], mouse) > 3 * _NEAR * canvas.scale
+            ):
+                self._ask(giver, output)
+
+    def _say_refusal(self, giver: str, target: tuple[str, str]) -> None:
+        if not target[1]:
+            imgui.set_tooltip(tr("{name} takes no input", name=target[0]))
+        else:
+            words = "{giver} is made from {reader} already: this would close a circle"
+            imgui.set_tooltip(tr(words, giver=giver, reader=target[0]))
+
+    def _pin_marks(self, wiring: Wiring, canvas: _Canvas, pins: _Pins) -> None:
+        draw, mouse = imgui.get_window_draw_list(), imgui.get_mouse_pos()
+        wired = {(wire.reader, wire.input) for wire in wiring.wires}
+        radius = max(min(canvas.k, 1.3 * canvas.scale), 0.5 * canvas.scale)
+        hovers = canvas.holds(mouse) and imgui.is_window_hovered() and not self.graph.inner
+        lit = _nearest(pins.outputs, mouse, _NEAR * canvas.scale) if hovers else None
+        lit_in = _nearest(pins.inputs, mouse, _NEAR * canvas.scale) if hovers and lit is None else None
+        for pin, point in pins.inputs.items():
+            ink = theme.packed(theme.palette.accent if pin == lit_in else theme.palette.ink)
+            if pin in wired or self.graph.inner:
+                draw.add_circle_filled(point, 3.4 * radius, ink)
+            else:
+                draw.add_circle_filled(point, 3.4 * radius, theme.packed(theme.palette.ground))
+                draw.add_circle(point, 3.4 * radius, ink)
+        for pin, point in pins.outputs.items():
+            on = pin in (lit, self.graph.pulled)
+            draw.add_circle_filled(
+                point,
+                (5.4 if on else 3.8) * radius,
+                theme.packed(theme.palette.accent if on else theme.palette.ink),
+            )
+        if lit is not None and self.graph.pulled is None:
+            imgui.set_tooltip(
+                tr("{name}: drag it to an input, or into the empty to add a pass", name=":".join(lit))
+            )
+        elif lit_in is not None and self.graph.pulled is None:
+            imgui.set_tooltip(".".join(lit_in))
+
+    # ── nodes ────────────────────────────────────────────────────────────────
+
+    def _draw_node(self, name: str, wiring: Wiring, canvas: _Canvas, look: Theme) -> None:
+        """Draw one node, and take what is done to it."""
+        graph, session = self.graph, self._bench.session
+        x, y = _corner(wiring, name)
+        low, far, k = canvas.place(x, y), canvas.place(x + _WIDE, y + _HIGH), canvas.k
+        if far.x < canvas.corner.x or low.x > canvas.corner.x + canvas.room.x:
+            return
+        if far.y < canvas.corner.y or low.y > canvas.corner.y + canvas.room.y:
+            return
+        ref = wiring.refs[name]
+        is_free = graph.pulled is None and imgui.is_window_hovered() and canvas.holds(imgui.get_mouse_pos())
+        shown = session.view.map.ref == ref if session.view.map is not None else name == "view"
+        node = _Node(
+            name,
+            ref,
+            (x, y),
+            is_hovered=is_free and _node_at(wiring, canvas, imgui.get_mouse_pos()) == name,
+            is_muted=name.partition(".")[0] in session.view.muted,
+            is_shown=shown,
+        )
+        imgui.set_cursor_screen_pos(ImVec2(low.x + 6 * k, low.y))
+        imgui.set_next_item_allow_overlap()
+        imgui.invisible_button(f"node {name}", ImVec2(max(far.x - low.x - 12 * k, 1), max(far.y - low.y, 1)))
+        if imgui.is_item_hovered() and graph.pulled is None:
+            if imgui.is_mouse_double_clicked(0):
+                self._show(name, ref)
+            if imgui.is_mouse_clicked(1):
+                graph.chosen, graph.has_keys, self._menu = name, True, name
+                imgui.open_popup("node menu")
+            if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+                lines = [_tooltip(name, session), self._bench.inspection.reasons.text(name)]
+                imgui.set_tooltip("\n".join(filter(None, lines)))
+        self._draw_box(node, low, far, canvas)
+        self._draw_picture(node, canvas.place(x + 14, y + 5), _THUMB * k)
+        if canvas.zoom < _LEGIBLE:  # what could not be read is not written
+            return
+        is_marked = node.is_hovered or node.is_muted or node.is_shown or name == graph.chosen
+        has_buttons = is_marked and not graph.inner and name != "view"
+        self._write_words(node, canvas, look, has_buttons=has_buttons)
+        if has_buttons:
+            self._draw_buttons(node, canvas, look)
+
+    def _draw_box(self, node: _Node, low: ImVec2, far: ImVec2, canvas: _Canvas) -> None:
+        draw, palette, k = imgui.get_window_draw_list(), theme.palette, canvas.k
+        ground = palette.raised if node.is_hovered else palette.field
+        draw.add_rect_filled(low, far, theme.packed(ground, 0.55 if node.is_muted else 1.0), 6 * k)
+        if node.is_shown:
+            draw.add_rect(low, far, theme.packed(palette.accent), 6 * k, 2 * canvas.scale)
+        if node.name == self.graph.chosen:
+            out = 3 * canvas.scale
+            corner = ImVec2(low.x - out, low.y - out), ImVec2(far.x + out, far.y + out)
+            draw.add_rect(*corner, theme.packed(palette.ink), 8 * k, 2 * canvas.scale)
+        if node.is_muted:
+            left, right = ImVec2(low.x, (low.y + far.y) / 2), ImVec2(far.x, (low.y + far.y) / 2)
+            draw.add_line(left, right, theme.packed(palette.dim), 2 * canvas.scale)
+
+    def _draw_picture(self, node: _Node, low: ImVec2, side: float) -> None:
+        draw, thumbnails = imgui.get_window_draw_list(), self.graph.thumbnails
+        high, texture = ImVec2(low.x + side, low.y + side), thumbnails.get(node.ref)
+        if texture is None:
+            draw.add_rect(low, high, theme.packed(theme.palette.line))
+            return
+        # Dimmed where it is of another picture than the last.
+        alpha = 0.45 if node.is_muted or not thumbnails.is_current(node.ref) else 1.0
+        tint = theme.packed((1.0, 1.0, 1.0), alpha)
         draw.add_image(imgui.ImTextureRef(texture.glo), low, high, ImVec2(0, 1), ImVec2(1, 0), tint)
-    runs, ran, spent = cost_of(session, node)
-    lines = [(node, theme.palette.ink), (runs, theme.palette.accent if ran else theme.palette.dim)]
-    if session.engine.options.profiling:
-        lines.append((f"{spent:.2f} ms" if spent is not None else "", theme.palette.dim))
-    line = imgui.get_text_line_height()
-    for number, (text, ink) in enumerate(lines):
-        text = fitting(text, (_WIDE - 8) * scale)
-        across = x + (_WIDE * scale - imgui.calc_text_size(text).x) / 2
-        draw.add_text(ImVec2(across, high.y + number * line), theme.packed(ink), text)
+
+    def _write_words(self, node: _Node, canvas: _Canvas, look: Theme, *, has_buttons: bool) -> None:
+        """Write a node's name, its technique, unless buttons take its place, and what it cost."""
+        palette, sketch = theme.palette, self.graph.sketch
+        spec = sketch.graph.find(node.name) if sketch is not None else None
+        use = spec.use.rpartition("/")[2] if spec is not None else node.name.rpartition(".")[0]
+        runs, ran, spent = cost_of(self._bench.session, node.name)
+        cost = runs if spent is None else f"{spent:.2f} ms" if spent < 10 else f"{spent:.0f} ms"
+        cost = tr("muted") if node.is_muted else cost
+        ink = palette.accent if ran and not node.is_muted else palette.dim
+        rows = [(node.name.rpartition(".")[2], look.bold, 14.0, palette.ink, 5.0)]
+        rows += [] if has_buttons else [(use, look.text, 12.0, palette.dim, 24.0)]
+        for text, font, size, colour, down in (*rows, (cost, look.text, 12.0, ink, 43.0)):
+            place = canvas.place(node.at[0] + _TEXT, node.at[1] + down)
+            _write(text, font, size * canvas.k, place, (_WIDE - _TEXT - 8) * canvas.k, colour)
+
+    def _draw_buttons(self, node: _Node, canvas: _Canvas, look: Theme) -> None:
+        """Draw M, S and + in a node."""
+        edits, palette, draw = self._bench.passes, theme.palette, imgui.get_window_draw_list()
+        mute = tr("Mute: let through what it is made of; not written (M)")
+        solo = tr("Solo: show its texture from above; not written (S)")
+        row: tuple[tuple[str, bool, str, Callable[[], object]], ...] = (
+            ("M", node.is_muted, mute, lambda: edits.mute(node.name)),
+            ("S", node.is_shown, solo, lambda: edits.solo(node.name, node.ref)),
+            ("+", False, tr("Add a pass behind it (+)"), lambda: self._ask(node.name)),
+        )
+        side, size = 17.0, 12.5 * canvas.k
+        for number, (sign, is_lit, note, act) in enumerate(row):
+            x, y = node.at[0] + _WIDE - 8 - (3 - number) * (side + 3), node.at[1] + 23
+            low, far = canvas.place(x, y), canvas.place(x + side, y + side)
+            imgui.set_cursor_screen_pos(low)  # away from the node's middle, where one clicks on it
+            clicked = imgui.invisible_button(f"{sign} {node.name}", ImVec2(far.x - low.x, far.y - low.y))
+            hovered = imgui.is_item_hovered()
+            if hovered:
+                imgui.set_tooltip(note)
+            ground = palette.grab if is_lit else palette.pressed if hovered else palette.hover
+            draw.add_rect_filled(low, far, theme.packed(ground), 3 * canvas.k)
+            if is_lit:
+                draw.add_rect(low, far, theme.packed(palette.ink), 3 * canvas.k)
+            place = ImVec2(
+                (low.x + far.x - _width(sign, look.bold, size)) / 2, (low.y + far.y) / 2 - 0.62 * size
+            )
+            draw.add_text(look.bold, size, place, theme.packed(palette.ink), sign)
+            if clicked:
+                act()
+
+    # ── what can be done ─────────────────────────────────────────────────────
+
+    def _show(self, node: str, ref: str) -> None:
+        self._bench.session.show(None if node.partition(".")[0] == "view" else ref)
+
+    def _ask(self, after: str, output: str = "") -> None:
+        """Open the chooser for a pass behind another."""
+        sketch = self.graph.sketch
+        if sketch is not None:
+            self.graph.touched = True
+            self.graph.chooser.open(sketch, "" if after == "view" else after, output)
+
+    def _delete(self) -> None:
+        graph, edits = self.graph, self._bench.passes
+        if self._wire is not None:
+            edits.unwire(*self._wire)
+            self._wire = None
+        elif graph.chosen:
+            edits.delete(graph.chosen)
+
+    def _duplicate(self) -> None:
+        new = self._bench.passes.duplicate(self.graph.chosen)
+        self.graph.chosen = new or self.graph.chosen
+
+    def _begin_wire(self, wiring: Wiring) -> None:
+        graph = self.graph
+        outputs = wiring.outputs.get(graph.chosen, ())
+        if outputs:
+            graph.pulled, graph.by_keys = (graph.chosen, outputs[0]), True
+
+    def _enter(self, wiring: Wiring) -> None:
+        """Show what is chosen; or join the wire that was begun by a key to it."""
+        graph = self.graph
+        if graph.pulled is None:
+            self._show(graph.chosen, wiring.refs[graph.chosen])
+            return
+        (giver, output), graph.pulled = graph.pulled, None
+        name = wiring.input_for(giver, output, graph.chosen)
+        if giver != graph.chosen and name:
+            self._bench.passes.wire(giver, output, graph.chosen, name)
+
+    def _keys(self, wiring: Wiring) -> None:
+        """Do what a key asks for while the graph has the keys."""
+        graph, io, key = self.graph, imgui.get_io(), imgui.Key
+        popup = imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
+        if not graph.has_keys or popup or io.want_text_input or io.key_alt or graph.chooser.on:
+            return
+        chosen, edits, ctrl = graph.chosen, self._bench.passes, ctrl_held()
+        arrows = {
+            key.left_arrow: (-1, 0),
+            key.right_arrow: (1, 0),
+            key.up_arrow: (0, -1),
+            key.down_arrow: (0, 1),
+        }
+        for arrow, step in arrows.items():
+            if imgui.is_key_pressed(arrow):
+                graph.took_key = True
+                if not ctrl:
+                    graph.step(*step)
+                    self._wire = None
+                elif chosen and not graph.inner:
+                    edits.move(chosen, step[0] or step[1])
+        if ctrl:
+            return
+        acts: list[tuple[imgui.Key, bool, Callable[[], object]]] = [
+            (key.f, True, self._fit),
+            (key.enter, bool(chosen), lambda: self._enter(wiring)),
+            (key.keypad_enter, bool(chosen), lambda: self._enter(wiring)),
+        ]
+        if not graph.inner:
+            acts += [
+                (key.m, bool(chosen), lambda: edits.mute(chosen)),
+                (key.s, bool(chosen), lambda: edits.solo(chosen, wiring.refs[chosen])),
+                (key.d, bool(chosen), self._duplicate),
+                (key.w, bool(chosen), lambda: self._begin_wire(wiring)),
+                (key.delete, bool(chosen) or self._wire is not None, self._delete),
+            ]
+        for which, can, act in acts:
+            if can and imgui.is_key_pressed(which, repeat=False):
+                graph.took_key = True
+                act()
+        if "+" in letters() and not graph.inner:
+            graph.took_key = True
+            self._ask(chosen)
+
+    def _fit(self) -> None:
+        self._fits = True
+
+    def _draw_menu(self, wiring: Wiring) -> None:
+        if not imgui.begin_popup("node menu"):
+            return
+        node, edits, inner = self._menu, self._bench.passes, self.graph.inner
+        if node not in wiring.refs:
+            imgui.close_current_popup()
+            imgui.end_popup()
+            return
+        imgui.text_disabled(node)
+        is_view, muted = node == "view", node in self._bench.session.view.muted
+        rows: list[tuple[str, str, str, bool, Callable[[], object]]] = [
+            ("show", tr("Show"), tr("Enter"), True, lambda: self._show(node, wiring.refs[node])),
+            ("parameters", tr("Its parameters"), "", True, lambda: self._reveal(node)),
+        ]
+        if not inner:
+            rows += [
+                (
+                    "mute",
+                    tr("No longer muted") if muted else tr("Mute"),
+                    "M",
+                    not is_view,
+                    lambda: edits.mute(node),
+                ),
+                ("behind", tr("Add a pass behind…"), "+", not is_view, lambda: self._ask(node)),
+                ("duplicate", tr("Duplicate"), "D", not is_view, self._duplicate),
+                ("earlier", tr("Earlier in the file"), "Ctrl+←", not is_view, lambda: edits.move(node, -1)),
+                ("later", tr("Later in the file"), "Ctrl+→", not is_view, lambda: edits.move(node, 1)),
+                ("delete", tr("Delete"), tr("Del"), not is_view, lambda: edits.delete(node)),
+            ]
+        for key, words, shortcut, can, act in rows:
+            if imgui.menu_item_simple(f"{words}###{key} pass", shortcut, False, can):
+                act()
+        imgui.end_popup()
+
+    def _reveal(self, node: str) -> None:
+        self._bench.interface.show_pass(node.partition(".")[0])
+
+
+# ── geometry ──────────────────────────────────────────────────────────────────
+
+
+def _corner(wiring: Wiring, node: str) -> tuple[float, float]:
+    """Return the upper left corner of a node [units of the graph]."""
+    column, y = wiring.layout.places[node]
+    return column * _STEP_X, (y - 0.5) * _HIGH
+
+
+def _pins_of(wiring: Wiring, canvas: _Canvas) -> _Pins:
+    """Return where all pins are: along a node's sides, one below the other."""
+    pins = _Pins()
+    for node in wiring.refs:
+        x, y = _corner(wiring, node)
+        for names, across, places in (
+            (wiring.inputs.get(node, ()), 0.0, pins.inputs),
+            (wiring.outputs.get(node, ()), _WIDE, pins.outputs),
+        ):
+            for number, name in enumerate(names):
+                down = _HIGH * (number + 1) / (len(names) + 1)
+                places[node, name] = canvas.place(x + across, y + down)
+    return pins
+
+
+def _line(wire: Wire, wiring: Wiring, canvas: _Canvas, pins: _Pins) -> list[ImVec2]:
+    """Return the points of a wire: bends between columns, straight where it crosses one."""
+    output = (wire.giver, wire.output)
+    first = pins.outputs.get(output) or next(p for (n, _), p in pins.outputs.items() if n == wire.giver)
+    last = pins.inputs[wire.reader, wire.input]
+    stops = [(first, first)]
+    if wiring.layout.places[wire.giver][0] < wiring.layout.places[wire.reader][0]:
+        for column, y in wiring.layout.route((wire.giver, wire.reader)):
+            left, right = column * _STEP_X, column * _STEP_X + _WIDE
+            stops.append((canvas.place(left, y * _HIGH), canvas.place(right, y * _HIGH)))
+    stops.append((last, last))
+    points: list[ImVec2] = [first]
+    for (_, a), (b, c) in pairwise(stops):
+        bend = max(0.5 * abs(b.x - a.x), 14 * canvas.k)
+        for step in range(1, 15):
+            t = step / 14
+            w = (1 - t) ** 3, 3 * (1 - t) ** 2 * t, 3 * (1 - t) * t * t, t**3
+            x = w[0] * a.x + w[1] * (a.x + bend) + w[2] * (b.x - bend) + w[3] * b.x
+            points.append(ImVec2(x, (w[0] + w[1]) * a.y + (w[2] + w[3]) * b.y))
+        if c is not b:
+            points.append(c)
+    return points
+
+
+def _distance(points: list[ImVec2], mouse: ImVec2) -> float:
+    """Return how far the mouse is from a line of points."""
+    if len(points) == 1:
+        return math.dist((points[0].x, points[0].y), (mouse.x, mouse.y))
+    least = math.inf
+    for a, b in pairwise(points):
+        dx, dy = b.x - a.x, b.y - a.y
+        t = ((mouse.x - a.x) * dx + (mouse.y - a.y) * dy) / ((dx * dx + dy * dy) or 1.0)
+        t = min(max(t, 0.0), 1.0)
+        least = min(least, math.dist((a.x + t * dx, a.y + t * dy), (mouse.x, mouse.y)))
+    return least
+
+
+def _nearest(pins: dict[tuple[str, str], ImVec2], mouse: ImVec2, reach: float) -> tuple[str, str] | None:
+    found = min(pins, key=lambda pin: _distance([pins[pin]], mouse), default=None)
+    return found if found is not None and _distance([pins[found]], mouse) < reach else None
+
+
+def _node_at(wiring: Wiring, canvas: _Canvas, mouse: ImVec2) -> str:
+    for node in wiring.refs:
+        x, y = _corner(wiring, node)
+        low, far = canvas.place(x, y), canvas.place(x + _WIDE, y + _HIGH)
+        if low.x <= mouse.x < far.x and low.y <= mouse.y < far.y:
+            return node
+    return ""
+
+
+def _write(text: str, font: imgui.ImFont, size: float, place: ImVec2, room: float, ink: theme.Rgb) -> None:
+    """Write a text at any size, cut by an ellipsis where there is no room for it."""
+    with _font(font, size):
+        shown = fitting(text, room)
+    imgui.get_window_draw_list().add_text(font, size, place, theme.packed(ink), shown)
+
+
+def _width(text: str, font: imgui.ImFont, size: float) -> float:
+    with _font(font, size):
+        return float(imgui.calc_text_size(text).x)
+
+
+@contextmanager
+def _font(font: imgui.ImFont, size: float) -> Iterator[None]:
+    """Measure text with a font of a size in the window's units, whatever the interface's own scale is."""
+    imgui.push_font(font, size / imgui.get_style().font_scale_dpi)
+    yield
+    imgui.pop_font()
 
 
 def _tooltip(node: str, session: Session) -> str:
-    """Return what a node's tooltip says: its technique, its texture's size and format."""
+    """Return what a node's tooltip says: its technique, its texture's size and format, its cost."""
     plan = session.plan
     lines = [node]
     spec = plan.flat.specs.get(node) if plan is not None else None
     if spec is not None:
         lines.append(spec.use)
+        if spec.technique.title:
+            lines.append(spec.technique.title)
     if plan is not None and spec is not None:
         for output, ref in plan.flat.outputs[node].items():
             step = plan.step(ref.path)
             if step is not None:
                 form = next((o.format for o in step.kernel.outputs if o.name == ref.output), "")
                 lines.append(f"{output}  {step.size[0]} x {step.size[1]} {form}")
+    runs, _, spent = cost_of(session, node)
+    lines.append(runs if spent is None else f"{runs}, {spent:.2f} ms")
     return "\n".join(lines)

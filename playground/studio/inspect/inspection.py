@@ -39,7 +39,7 @@ class Inspection:
 
     def patience(self, now: float) -> float:
         """Return how long nothing needs to be done here [s], at a moment of the clock that flickers."""
-        if self.spread_shown and self.counter.waits:
+        if (self.spread_shown and self.counter.waits) or self.graph.reads:
             return 0.0
         if self.compare.on and self.compare.mode is Mode.FLICKER:
             return min(PERIOD - now % PERIOD, THUMBNAIL_INTERVAL if self.graph.waits else math.inf)
@@ -82,4 +82,4 @@ class Inspection:
         self.inspector.release()
         self.counter.stop()
         self.compare.release()
-        self.graph.thumbnails.release()
+        self.graph.release()

@@ -209,7 +209,7 @@ def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
             bench.actions.save_picture()
         imgui.same_line()
         if button("Graph", "The passes as a graph, or no longer (G)"):
-            bench.inspection.graph.toggle()
+            bench.toggle_passes()
         imgui.same_line()
         if button("Trace", "Every value of the texel under the mouse beside the code, or no longer (T)"):
             bench.tracing.toggle()

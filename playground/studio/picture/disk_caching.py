@@ -40,7 +40,7 @@ class SessionCaching:
         self.patience = None
         if caching is None or session.plan is None or session.awaits_data:
             return
-        caching.skips = not (inspection.graph.on or inspection.inspector.on)
+        caching.skips = not (inspection.graph.touched or inspection.inspector.on)
         if caching.skipped and not caching.skips and self._full_at != session.draws:
             self._full_at = session.draws
             session.redraw()
