@@ -1,10 +1,10 @@
 """Where the passes of a graph are drawn: in columns, with wires that go around the nodes between.
 
 A pass is in one column right of the last that it reads, as in Sugiyama, Tagawa and Toda 1981, "Methods for
-Visual Understanding of Hierarchical System Structures"; one that reads nothing is next to its first reader.
-A wire that crosses columns has an invisible node in each, one for all wires of a pass. Within a column nodes
-are in the order of the middle of those that they are joined to, and each is as near to that middle as the
-others leave room for.
+Visual Understanding of Hierarchical System Structures"; one that reads nothing is near its first reader, in
+a column with room for it. A wire that crosses columns has an invisible node in each, one for all wires of a
+pass. Within a column nodes are in the order of the middle of those that they are joined to, and each is as
+near to that middle as the others leave room for; no column is higher than the fullest needs to be.
 """
 
 from __future__ import annotations
@@ -76,10 +76,11 @@ def layout_of(nodes: Sequence[str], edges: Sequence[Edge]) -> Layout:
             order |= {n: float(r) for r, n in enumerate(cells[c])}
     y: dict[_Node, float] = dict(order)
     around: Mapping[_Node, list[_Node]] = {n: givers.get(n, []) + readers.get(n, []) for n in order}
+    highest = max((sum(map(_high, row)) + GAP * (len(row) - 1) for row in cells.values()), default=0.0)
     for sweep in range(_SWEEPS):
         for c in sorted(cells, reverse=sweep % 2 == 1):
             wanted = [_mean([y[m] for m in around[n]], y[n]) for n in cells[c]]
-            y |= dict(zip(cells[c], _spaced(wanted, cells[c]), strict=True))
+            y |= dict(zip(cells[c], _spaced(wanted, cells[c], highest), strict=True))
     top = min((y[n] - _high(n) / 2 for n in y), default=0.0)
     return Layout(
         {node: (column[node], y[node] - top) for node in nodes},
@@ -99,17 +100,22 @@ def _columns(nodes: Sequence[str], edges: Sequence[Edge]) -> dict[str, int]:
         node = next((n for n in left if givers[n] <= column.keys()), left[0])
         left.remove(node)
         column[node] = max((column[giver] + 1 for giver in givers[node] if giver in column), default=0)
-    for node in nodes:
+    free = [node for node in nodes if not givers[node]]
+    held = [c for node, c in column.items() if node not in free]
+    most = max(-(-len(nodes) // (max(column.values(), default=0) + 1)), 2)
+    for node in free:
         behind = [column[b] for a, b in edges if a == node and b != node and column.get(b, 0) > 0]
-        if not givers[node] and behind:
-            column[node] = max(min(behind) - 1, 0)
+        places = range(max(min(behind, default=1) - 1, 0), -1, -1)
+        column[node] = next((c for c in places if held.count(c) < most), min(places, key=held.count))
+        held.append(column[node])
     return column
 
 
-def _spaced(wanted: Sequence[float], row: Sequence[_Node]) -> list[float]:
-    """Return the places nearest to those wanted, by their squares, at which nodes in a row do not touch.
+def _spaced(wanted: Sequence[float], row: Sequence[_Node], highest: float) -> list[float]:
+    """Return the places nearest to those wanted, by their squares, at which nodes in a column do not touch.
 
-    By pools of adjacent violators, after the room that each needs is taken out.
+    All of it is between 0 and ``highest``. By pools of adjacent violators, after the room that each node
+    needs is taken out.
     """
     offset, offsets = 0.0, []
     for number, node in enumerate(row):
@@ -121,7 +127,8 @@ def _spaced(wanted: Sequence[float], row: Sequence[_Node]) -> list[float]:
         while len(pools) > 1 and pools[-2][0] > pools[-1][0]:
             (b, m), (a, n) = pools.pop(), pools.pop()
             pools.append(((a * n + b * m) / (n + m), n + m))
-    flat = [mean for mean, count in pools for _ in range(count)]
+    low, most = _high(row[0]) / 2, highest - offset - _high(row[-1]) / 2
+    flat = [min(max(mean, low), most) for mean, count in pools for _ in range(count)]
     return [x + off for x, off in zip(flat, offsets, strict=True)]
 
 

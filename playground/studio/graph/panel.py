@@ -358,7 +358,10 @@ class GraphPanel:
             if imgui.is_mouse_clicked(1):
                 graph.chosen, graph.has_keys, self._menu = name, True, name
                 imgui.open_popup("node menu")
-            if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+            on_picture = (
+                imgui.get_mouse_pos().x < canvas.place(x + _TEXT, y).x
+            )  # else it would hide the buttons
+            if on_picture and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
                 lines = [_tooltip(name, session), self._bench.inspection.reasons.text(name)]
                 imgui.set_tooltip("\n".join(filter(None, lines)))
         self._draw_box(node, low, far, canvas)
