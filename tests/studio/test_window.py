@@ -313,7 +313,7 @@ def it_fills_the_screen_and_comes_back(app: App) -> None:
 
 def escape_closes_one_layer_at_a_time(app: App) -> None:
     open_layers = []
-    for key, layer in (("g", "graph"), ("a", "A/B"), ("F11", "full screen")):
+    for key, layer in (("g", "passes"), ("a", "A/B"), ("F11", "full screen")):
         app.do("key", key)
         open_layers.append(layer)
         app.wait(lambda now: now["layers"] == open_layers)
@@ -323,6 +323,7 @@ def escape_closes_one_layer_at_a_time(app: App) -> None:
         app.wait(lambda now: now["layers"] == open_layers)
     app.do("key", "Escape")
     app.says("Ctrl+Q quits")
+    app.do("key", "g")  # the strip is closed again
 
 
 def a_divider_is_dragged(app: App) -> None:
