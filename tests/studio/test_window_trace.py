@@ -69,7 +69,9 @@ class Traced(Program):
         (self.folder / "sketch.toml").write_text(HILLS, encoding="utf-8")
         close_panes(folder)
         super().__init__(screen, folder, [sys.executable, "-c", RUN, str(self.folder)], folder)
-        self.wait(lambda now: now["draws"] > 0)
+        drawn = self.wait(lambda now: now["draws"] > 0)["draws"]
+        screen.do("key", "g")  # the strip is closed: the map has its room
+        self.wait(lambda now: now["draws"] > drawn)
 
     def traced(self, condition: Any = lambda trace: True) -> dict[str, Any]:
         """Wait until there is a trace of which a condition holds."""
