@@ -8,11 +8,8 @@ that is done as well.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
-from itertools import pairwise
+from collections.abc import Callable
+from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
 
@@ -20,6 +17,25 @@ from playground.sketch.edit_passes import Wire
 from playground.studio import theme
 from playground.studio.bench import Workbench
 from playground.studio.draw import button, ctrl_held, disabled, fitting, letters
+from playground.studio.graph.canvas_panel import (
+    HIGH,
+    MOST,
+    STEP,
+    WIDE,
+    ZOOMS,
+    Canvas,
+    Pins,
+    corner_of,
+    distance,
+    draw_wire,
+    is_near,
+    nearest_pin,
+    node_at,
+    pins_of,
+    text_width,
+    wire_spans,
+    write,
+)
 from playground.studio.graph.chooser_panel import draw_chooser
 from playground.studio.graph.graph import Graph, Wiring, cost_of
 from playground.studio.interface import Tab
@@ -27,12 +43,8 @@ from playground.studio.language import tr
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 
-_WIDE, _HIGH = 172.0, 64.0  # of a node [units at zoom 1]
-_STEP_X = _WIDE + 54.0
 _THUMB = 54.0
 _TEXT = 78.0  # where a node's text begins
-_MOST = 1.25  # a graph that fits is never drawn larger
-_ZOOMS = (0.15, 3.0)
 _LEGIBLE = 0.45  # of the zoom: below, nothing is written
 _NEAR = 8.0  # [units] that the mouse may be away from a pin or a wire
 _F = imgui.ButtonFlags_
@@ -42,37 +54,6 @@ def passes_tab(bench: Workbench) -> Tab:
     """Return the strip's tab of the passes."""
     panel = GraphPanel(bench)
     return Tab("passes", "Passes", panel.draw)
-
-
-@dataclass
-class _Canvas:
-    """Where the graph is in its pane: from units of the layout to the window's."""
-
-    corner: ImVec2
-    room: ImVec2
-    zoom: float
-    pan: tuple[float, float]
-    scale: float
-
-    @property
-    def k(self) -> float:
-        """Window units of a unit of the graph."""
-        return self.zoom * self.scale
-
-    def place(self, x: float, y: float) -> ImVec2:
-        return ImVec2(self.corner.x + self.pan[0] + x * self.k, self.corner.y + self.pan[1] + y * self.k)
-
-    def holds(self, point: ImVec2) -> bool:
-        x, y = point.x - self.corner.x, point.y - self.corner.y
-        return 0 <= x < self.room.x and 0 <= y < self.room.y
-
-
-@dataclass
-class _Pins:
-    """Where the pins of the nodes are, by pass and name."""
-
-    inputs: dict[tuple[str, str], ImVec2] = field(default_factory=dict)
-    outputs: dict[tuple[str, str], ImVec2] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -118,7 +99,7 @@ class GraphPanel:
         draw = imgui.get_window_draw_list()
         draw.push_clip_rect(corner, ImVec2(corner.x + room.x, corner.y + room.y), True)
         self._ground(canvas, wiring)
-        pins = _pins_of(wiring, canvas)
+        pins = pins_of(wiring, canvas)
         lit = self._wires(wiring, canvas, pins)
         for node in wiring.refs:
             self._draw_node(node, wiring, canvas, look)
@@ -172,17 +153,17 @@ class GraphPanel:
         if fitting(words, room) != words:
             imgui.set_item_tooltip(words)
 
-    def _canvas(self, corner: ImVec2, room: ImVec2, wiring: Wiring, scale: float) -> _Canvas:
+    def _canvas(self, corner: ImVec2, room: ImVec2, wiring: Wiring, scale: float) -> Canvas:
         if self._fits:
             columns, high = wiring.layout.size
-            wide, high = max(columns, 1) * _STEP_X - (_STEP_X - _WIDE), max(high, 1.0) * _HIGH
+            wide, high = max(columns, 1) * STEP - (STEP - WIDE), max(high, 1.0) * HIGH
             fit = min((room.x - 24 * scale) / wide, (room.y - 12 * scale) / high) / scale
-            self._zoom = min(max(fit, _ZOOMS[0]), _MOST)
+            self._zoom = min(max(fit, ZOOMS[0]), MOST)
             k = self._zoom * scale
             self._pan = (room.x - wide * k) / 2, (room.y - high * k) / 2
-        return _Canvas(corner, room, self._zoom, self._pan, scale)
+        return Canvas(corner, room, self._zoom, self._pan, scale)
 
-    def _ground(self, canvas: _Canvas, wiring: Wiring) -> None:
+    def _ground(self, canvas: Canvas, wiring: Wiring) -> None:
         """Take what is done to the pane itself: zoom, move, give the keys."""
         graph, io = self.graph, imgui.get_io()
         imgui.set_next_item_allow_overlap()
@@ -204,27 +185,27 @@ class GraphPanel:
         if imgui.is_mouse_clicked(0) and not imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
             graph.has_keys = inside
             if inside:
-                self._wire, graph.chosen = None, _node_at(wiring, canvas, io.mouse_pos)
+                self._wire, graph.chosen = None, node_at(wiring, canvas, io.mouse_pos)
 
     def _magnify(self, by: float, x: float, y: float) -> None:
-        new = min(max(self._zoom * by, _ZOOMS[0]), _ZOOMS[1])
+        new = min(max(self._zoom * by, ZOOMS[0]), ZOOMS[1])
         ratio = new / self._zoom
         self._pan = x - (x - self._pan[0]) * ratio, y - (y - self._pan[1]) * ratio
         self._zoom, self._fits = new, False
 
     # ── wires ────────────────────────────────────────────────────────────────
 
-    def _wires(self, wiring: Wiring, canvas: _Canvas, pins: _Pins) -> Wire | None:
+    def _wires(self, wiring: Wiring, canvas: Canvas, pins: Pins) -> Wire | None:
         """Draw the wires; return the one under the mouse."""
         mouse, near = imgui.get_mouse_pos(), None
         hovers = canvas.holds(mouse) and imgui.is_window_hovered() and self.graph.pulled is None
-        over = _node_at(wiring, canvas, mouse)
-        lines = [(wire, _line(wire, wiring, canvas, pins)) for wire in wiring.wires]
+        over = node_at(wiring, canvas, mouse)
+        lines = [(wire, wire_spans(wire, wiring, canvas, pins)) for wire in wiring.wires]
         if hovers and not over and not self.graph.inner:
             reach = _NEAR * canvas.scale * 0.7
-            near = next((wire for wire, points in lines if _distance(points, mouse) < reach), None)
+            near = next((wire for wire, spans in lines if is_near(spans, canvas, mouse, reach)), None)
         muted = self._bench.session.view.muted
-        for wire, points in lines:
+        for wire, spans in lines:
             chosen = self._wire == (wire.reader, wire.input)
             touches = self.graph.chosen in (wire.giver, wire.reader) and bool(self.graph.chosen)
             ink = (
@@ -236,21 +217,20 @@ class GraphPanel:
             )
             alpha = 0.35 if {wire.giver, wire.reader} & muted else 0.9
             thick = (3.0 if chosen or wire is near else 2.0) * max(min(canvas.zoom, 1.2), 0.5) * canvas.scale
-            draw = imgui.get_window_draw_list()
-            draw.add_polyline([*points], theme.packed(ink, alpha), thick, imgui.ImDrawFlags_.none)
+            draw_wire(spans, canvas, theme.packed(ink, alpha), thick)
         if near is not None:
             source = f"{near.giver}:{near.output}" if near.output else near.source
             note = tr("found by its name") if not near.is_written else tr("Del takes it away")
             imgui.set_tooltip(f"{source} → {near.reader}.{near.input}\n{note}")
         return near
 
-    def _pull(self, wiring: Wiring, canvas: _Canvas, pins: _Pins) -> None:
+    def _pull(self, wiring: Wiring, canvas: Canvas, pins: Pins) -> None:
         """Draw the wire that is pulled from an output, and join or ask where it is let go."""
         graph, mouse = self.graph, imgui.get_mouse_pos()
         hovers = canvas.holds(mouse) and imgui.is_window_hovered(
             imgui.HoveredFlags_.allow_when_blocked_by_active_item
         )
-        out = _nearest(pins.outputs, mouse, _NEAR * canvas.scale) if hovers else None
+        out = nearest_pin(pins.outputs, mouse, _NEAR * canvas.scale) if hovers else None
         if graph.pulled is None:
             if out is not None and imgui.is_mouse_clicked(0):
                 graph.pulled, graph.by_keys = out, False
@@ -262,9 +242,11 @@ class GraphPanel:
             return
         giver, output = graph.pulled
         target = (
-            _nearest(pins.inputs, mouse, 1.6 * _NEAR * canvas.scale) if hovers and not graph.by_keys else None
+            nearest_pin(pins.inputs, mouse, 1.6 * _NEAR * canvas.scale)
+            if hovers and not graph.by_keys
+            else None
         )
-        over = graph.chosen if graph.by_keys else _node_at(wiring, canvas, mouse)
+        over = graph.chosen if graph.by_keys else node_at(wiring, canvas, mouse)
         if target is None and over and over != giver:
             target = over, wiring.input_for(giver, output, over)
         refused = target is not None and (not target[1] or graph.is_refused(giver, target[0]))
@@ -284,12 +266,7 @@ class GraphPanel:
             graph.pulled = None
             if target is not None and not refused:
                 self._bench.passes.wire(giver, output, *target)
-            elif (
-                target is None
-                and hovers
-                and not over
-                and _distance([start], mouse) > 3 * _NEAR * canvas.scale
-            ):
+            elif target is None and hovers and not over and distance(start, mouse) > 3 * _NEAR * canvas.scale:
                 self._ask(giver, output)
 
     def _say_refusal(self, giver: str, target: tuple[str, str]) -> None:
@@ -299,13 +276,13 @@ class GraphPanel:
             words = "{giver} is made from {reader} already: this would close a circle"
             imgui.set_tooltip(tr(words, giver=giver, reader=target[0]))
 
-    def _pin_marks(self, wiring: Wiring, canvas: _Canvas, pins: _Pins) -> None:
+    def _pin_marks(self, wiring: Wiring, canvas: Canvas, pins: Pins) -> None:
         draw, mouse = imgui.get_window_draw_list(), imgui.get_mouse_pos()
         wired = {(wire.reader, wire.input) for wire in wiring.wires}
         radius = max(min(canvas.k, 1.3 * canvas.scale), 0.5 * canvas.scale)
         hovers = canvas.holds(mouse) and imgui.is_window_hovered() and not self.graph.inner
-        lit = _nearest(pins.outputs, mouse, _NEAR * canvas.scale) if hovers else None
-        lit_in = _nearest(pins.inputs, mouse, _NEAR * canvas.scale) if hovers and lit is None else None
+        lit = nearest_pin(pins.outputs, mouse, _NEAR * canvas.scale) if hovers else None
+        lit_in = nearest_pin(pins.inputs, mouse, _NEAR * canvas.scale) if hovers and lit is None else None
         for pin, point in pins.inputs.items():
             ink = theme.packed(theme.palette.accent if pin == lit_in else theme.palette.ink)
             if pin in wired or self.graph.inner:
@@ -329,11 +306,11 @@ class GraphPanel:
 
     # ── nodes ────────────────────────────────────────────────────────────────
 
-    def _draw_node(self, name: str, wiring: Wiring, canvas: _Canvas, look: Theme) -> None:
+    def _draw_node(self, name: str, wiring: Wiring, canvas: Canvas, look: Theme) -> None:
         """Draw one node, and take what is done to it."""
         graph, session = self.graph, self._bench.session
-        x, y = _corner(wiring, name)
-        low, far, k = canvas.place(x, y), canvas.place(x + _WIDE, y + _HIGH), canvas.k
+        x, y = corner_of(wiring, name)
+        low, far, k = canvas.place(x, y), canvas.place(x + WIDE, y + HIGH), canvas.k
         if far.x < canvas.corner.x or low.x > canvas.corner.x + canvas.room.x:
             return
         if far.y < canvas.corner.y or low.y > canvas.corner.y + canvas.room.y:
@@ -345,7 +322,7 @@ class GraphPanel:
             name,
             ref,
             (x, y),
-            is_hovered=is_free and _node_at(wiring, canvas, imgui.get_mouse_pos()) == name,
+            is_hovered=is_free and node_at(wiring, canvas, imgui.get_mouse_pos()) == name,
             is_muted=name.partition(".")[0] in session.view.muted,
             is_shown=shown,
         )
@@ -374,7 +351,7 @@ class GraphPanel:
         if has_buttons:
             self._draw_buttons(node, canvas, look)
 
-    def _draw_box(self, node: _Node, low: ImVec2, far: ImVec2, canvas: _Canvas) -> None:
+    def _draw_box(self, node: _Node, low: ImVec2, far: ImVec2, canvas: Canvas) -> None:
         draw, palette, k = imgui.get_window_draw_list(), theme.palette, canvas.k
         ground = palette.raised if node.is_hovered else palette.field
         draw.add_rect_filled(low, far, theme.packed(ground, 0.55 if node.is_muted else 1.0), 6 * k)
@@ -399,7 +376,7 @@ class GraphPanel:
         tint = theme.packed((1.0, 1.0, 1.0), alpha)
         draw.add_image(imgui.ImTextureRef(texture.glo), low, high, ImVec2(0, 1), ImVec2(1, 0), tint)
 
-    def _write_words(self, node: _Node, canvas: _Canvas, look: Theme, *, has_buttons: bool) -> None:
+    def _write_words(self, node: _Node, canvas: Canvas, look: Theme, *, has_buttons: bool) -> None:
         """Write a node's name, its technique, unless buttons take its place, and what it cost."""
         palette, sketch = theme.palette, self.graph.sketch
         spec = sketch.graph.find(node.name) if sketch is not None else None
@@ -412,9 +389,9 @@ class GraphPanel:
         rows += [] if has_buttons else [(use, look.text, 12.0, palette.dim, 24.0)]
         for text, font, size, colour, down in (*rows, (cost, look.text, 12.0, ink, 43.0)):
             place = canvas.place(node.at[0] + _TEXT, node.at[1] + down)
-            _write(text, font, size * canvas.k, place, (_WIDE - _TEXT - 8) * canvas.k, colour)
+            write(text, font, size * canvas.k, place, (WIDE - _TEXT - 8) * canvas.k, colour)
 
-    def _draw_buttons(self, node: _Node, canvas: _Canvas, look: Theme) -> None:
+    def _draw_buttons(self, node: _Node, canvas: Canvas, look: Theme) -> None:
         """Draw M, S and + in a node."""
         edits, palette, draw = self._bench.passes, theme.palette, imgui.get_window_draw_list()
         mute = tr("Mute: let through what it is made of; not written (M)")
@@ -426,7 +403,7 @@ class GraphPanel:
         )
         side, size = 17.0, 12.5 * canvas.k
         for number, (sign, is_lit, note, act) in enumerate(row):
-            x, y = node.at[0] + _WIDE - 8 - (3 - number) * (side + 3), node.at[1] + 23
+            x, y = node.at[0] + WIDE - 8 - (3 - number) * (side + 3), node.at[1] + 23
             low, far = canvas.place(x, y), canvas.place(x + side, y + side)
             imgui.set_cursor_screen_pos(low)  # away from the node's middle, where one clicks on it
             clicked = imgui.invisible_button(f"{sign} {node.name}", ImVec2(far.x - low.x, far.y - low.y))
@@ -438,7 +415,7 @@ class GraphPanel:
             if is_lit:
                 draw.add_rect(low, far, theme.packed(palette.ink), 3 * canvas.k)
             place = ImVec2(
-                (low.x + far.x - _width(sign, look.bold, size)) / 2, (low.y + far.y) / 2 - 0.62 * size
+                (low.x + far.x - text_width(sign, look.bold, size)) / 2, (low.y + far.y) / 2 - 0.62 * size
             )
             draw.add_text(look.bold, size, place, theme.packed(palette.ink), sign)
             if clicked:
@@ -568,101 +545,6 @@ class GraphPanel:
 
     def _reveal(self, node: str) -> None:
         self._bench.interface.show_pass(node.partition(".")[0])
-
-
-# ── geometry ──────────────────────────────────────────────────────────────────
-
-
-def _corner(wiring: Wiring, node: str) -> tuple[float, float]:
-    """Return the upper left corner of a node [units of the graph]."""
-    column, y = wiring.layout.places[node]
-    return column * _STEP_X, (y - 0.5) * _HIGH
-
-
-def _pins_of(wiring: Wiring, canvas: _Canvas) -> _Pins:
-    """Return where all pins are: along a node's sides, one below the other."""
-    pins = _Pins()
-    for node in wiring.refs:
-        x, y = _corner(wiring, node)
-        for names, across, places in (
-            (wiring.inputs.get(node, ()), 0.0, pins.inputs),
-            (wiring.outputs.get(node, ()), _WIDE, pins.outputs),
-        ):
-            for number, name in enumerate(names):
-                down = _HIGH * (number + 1) / (len(names) + 1)
-                places[node, name] = canvas.place(x + across, y + down)
-    return pins
-
-
-def _line(wire: Wire, wiring: Wiring, canvas: _Canvas, pins: _Pins) -> list[ImVec2]:
-    """Return the points of a wire: bends between columns, straight where it crosses one."""
-    output = (wire.giver, wire.output)
-    first = pins.outputs.get(output) or next(p for (n, _), p in pins.outputs.items() if n == wire.giver)
-    last = pins.inputs[wire.reader, wire.input]
-    stops = [(first, first)]
-    if wiring.layout.places[wire.giver][0] < wiring.layout.places[wire.reader][0]:
-        for column, y in wiring.layout.route((wire.giver, wire.reader)):
-            left, right = column * _STEP_X, column * _STEP_X + _WIDE
-            stops.append((canvas.place(left, y * _HIGH), canvas.place(right, y * _HIGH)))
-    stops.append((last, last))
-    points: list[ImVec2] = [first]
-    for (_, a), (b, c) in pairwise(stops):
-        bend = max(0.5 * abs(b.x - a.x), 14 * canvas.k)
-        for step in range(1, 15):
-            t = step / 14
-            w = (1 - t) ** 3, 3 * (1 - t) ** 2 * t, 3 * (1 - t) * t * t, t**3
-            x = w[0] * a.x + w[1] * (a.x + bend) + w[2] * (b.x - bend) + w[3] * b.x
-            points.append(ImVec2(x, (w[0] + w[1]) * a.y + (w[2] + w[3]) * b.y))
-        if c is not b:
-            points.append(c)
-    return points
-
-
-def _distance(points: list[ImVec2], mouse: ImVec2) -> float:
-    """Return how far the mouse is from a line of points."""
-    if len(points) == 1:
-        return math.dist((points[0].x, points[0].y), (mouse.x, mouse.y))
-    least = math.inf
-    for a, b in pairwise(points):
-        dx, dy = b.x - a.x, b.y - a.y
-        t = ((mouse.x - a.x) * dx + (mouse.y - a.y) * dy) / ((dx * dx + dy * dy) or 1.0)
-        t = min(max(t, 0.0), 1.0)
-        least = min(least, math.dist((a.x + t * dx, a.y + t * dy), (mouse.x, mouse.y)))
-    return least
-
-
-def _nearest(pins: dict[tuple[str, str], ImVec2], mouse: ImVec2, reach: float) -> tuple[str, str] | None:
-    found = min(pins, key=lambda pin: _distance([pins[pin]], mouse), default=None)
-    return found if found is not None and _distance([pins[found]], mouse) < reach else None
-
-
-def _node_at(wiring: Wiring, canvas: _Canvas, mouse: ImVec2) -> str:
-    for node in wiring.refs:
-        x, y = _corner(wiring, node)
-        low, far = canvas.place(x, y), canvas.place(x + _WIDE, y + _HIGH)
-        if low.x <= mouse.x < far.x and low.y <= mouse.y < far.y:
-            return node
-    return ""
-
-
-def _write(text: str, font: imgui.ImFont, size: float, place: ImVec2, room: float, ink: theme.Rgb) -> None:
-    """Write a text at any size, cut by an ellipsis where there is no room for it."""
-    with _font(font, size):
-        shown = fitting(text, room)
-    imgui.get_window_draw_list().add_text(font, size, place, theme.packed(ink), shown)
-
-
-def _width(text: str, font: imgui.ImFont, size: float) -> float:
-    with _font(font, size):
-        return float(imgui.calc_text_size(text).x)
-
-
-@contextmanager
-def _font(font: imgui.ImFont, size: float) -> Iterator[None]:
-    """Measure text with a font of a size in the window's units, whatever the interface's own scale is."""
-    imgui.push_font(font, size / imgui.get_style().font_scale_dpi)
-    yield
-    imgui.pop_font()
 
 
 def _tooltip(node: str, session: Session) -> str:
