@@ -295,6 +295,40 @@ def test_an_undo_leaves_what_was_edited_elsewhere(passes_bare: Bare) -> None:
     assert text_of(bare) == clash and any("edited" in note.text for note in bare.bench.notices.items)
 
 
+def test_values_that_are_not_saved_outlive_an_edit_of_the_passes(passes_bare: Bare) -> None:
+    bare = passes_bare
+    bare.session.drafts.set("height.level", 0.5)
+    bare.run_frames(2)
+    bare.bench.passes.duplicate("colour")
+    settle(bare)
+    assert bare.session.shown is not None and dict(bare.session.shown.edits.values) == {"height.level": 0.5}
+    bare.bench.undo.undo()
+    settle(bare)
+    assert text_of(bare) == SKETCH and dict(bare.session.shown.edits.values) == {"height.level": 0.5}
+    bare.bench.undo.undo()
+    settle(bare)
+    assert text_of(bare) == SKETCH and not bare.session.shown.edits.values
+
+
+def test_a_pass_that_cannot_be_drawn_is_undone(passes_bare: Bare) -> None:
+    """The picture stays, the file says what was asked for, and an edit more or an undo goes on from it."""
+    bare = passes_bare
+    (bare.session.path.parent / "broken.glsl").write_text(
+        '#pragma kernel(output = "height:r32f")\nuniform sampler2D height; //! input\n'
+        "float kernel(ivec2 texel) { return nothing; }\n",
+        encoding="utf-8",
+    )
+    assert bare.bench.passes.add("./broken", "height") == "broken"
+    settle(bare)
+    assert bare.session.error is not None and "broken" in text_of(bare) and names_of(bare)[1] == "colour"
+    assert bare.bench.passes.duplicate("colour") == "colour_2"
+    settle(bare)
+    for _ in range(2):
+        bare.bench.undo.undo()
+        settle(bare)
+    assert bare.session.error is None and text_of(bare) == SKETCH
+
+
 def test_edits_in_a_row_do_not_wait_for_the_picture(passes_bare: Bare) -> None:
     edits = passes_bare.bench.passes
     assert edits.duplicate("height") == "height_2" and edits.duplicate("height_2") == "height_3"

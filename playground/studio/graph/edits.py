@@ -98,6 +98,9 @@ class PassEdits:
     def mute(self, name: str) -> None:
         """Let through what a pass is made of, as if it were not there; or no longer."""
         view = self.session.view
+        if name == "view":
+            self.notices.say(tr("the view makes the picture, so it is not muted"))
+            return
         if name not in view.muted and not self.can_mute(name):
             words = tr("{name} is made of nothing that could take its place, so it is not muted", name=name)
             self.notices.say(words)

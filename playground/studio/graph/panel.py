@@ -45,7 +45,7 @@ from playground.studio.theme import Theme
 
 _THUMB = 54.0
 _TEXT = 78.0  # where a node's text begins
-_LEGIBLE = 0.45  # of the zoom: below, nothing is written
+_LEGIBLE = 0.45  # of the size of letters: below, nothing is written
 _NEAR = 8.0  # [units] that the mouse may be away from a pin or a wire
 _F = imgui.ButtonFlags_
 
@@ -76,6 +76,7 @@ class GraphPanel:
         self._zoom, self._pan = 1.0, (0.0, 0.0)
         self._fits = True  # until the graph is moved or zoomed by hand
         self._wire: tuple[str, str] | None = None  # the wire that is chosen: reader and input
+        self._rests = False  # the mouse does, over the pane: what is under it is explained
         self._menu = ""  # the node whose menu is open
 
     @property
@@ -168,6 +169,7 @@ class GraphPanel:
         graph, io = self.graph, imgui.get_io()
         imgui.set_next_item_allow_overlap()
         imgui.invisible_button("canvas", canvas.room, _F.mouse_button_left | _F.mouse_button_middle)
+        self._rests = imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip)
         inside = canvas.holds(io.mouse_pos) and imgui.is_window_hovered(
             imgui.HoveredFlags_.allow_when_blocked_by_active_item
         )
@@ -218,7 +220,7 @@ class GraphPanel:
             alpha = 0.35 if {wire.giver, wire.reader} & muted else 0.9
             thick = (3.0 if chosen or wire is near else 2.0) * max(min(canvas.zoom, 1.2), 0.5) * canvas.scale
             draw_wire(spans, canvas, theme.packed(ink, alpha), thick)
-        if near is not None:
+        if near is not None and self._rests:
             source = f"{near.giver}:{near.output}" if near.output else near.source
             note = tr("found by its name") if not near.is_written else tr("Del takes it away")
             imgui.set_tooltip(f"{source} → {near.reader}.{near.input}\n{note}")
@@ -343,7 +345,7 @@ class GraphPanel:
                 imgui.set_tooltip("\n".join(filter(None, lines)))
         self._draw_box(node, low, far, canvas)
         self._draw_picture(node, canvas.place(x + 14, y + 5), _THUMB * k)
-        if canvas.zoom < _LEGIBLE:  # what could not be read is not written
+        if canvas.k < _LEGIBLE:  # what could not be read is not written
             return
         is_marked = node.is_hovered or node.is_muted or node.is_shown or name == graph.chosen
         has_buttons = is_marked and not graph.inner and name != "view"
