@@ -260,6 +260,10 @@ class GraphPanel:
         draw = imgui.get_window_draw_list()
         points = ImVec2(start.x + bend, start.y), ImVec2(end.x - bend, end.y)
         draw.add_bezier_cubic(start, *points, end, ink, 3 * canvas.scale)
+        if graph.by_keys and target is not None:
+            imgui.set_next_window_pos(
+                ImVec2(end.x, end.y + 2 * _NEAR * canvas.scale)
+            )  # there, not at the mouse
         if refused and target is not None:
             self._say_refusal(giver, target)
         elif target is not None:
