@@ -165,6 +165,29 @@ class Actions:
         self._visits(self.session.path, path)
         self.session.open_copy(path, saved)
 
+    def copy_technique(self, path: Path) -> Path | None:
+        """Copy a technique of the library into the sketch's folder, for the passes that it fills.
+
+        Returns the copy; None, and a notice, where no pass names it or it cannot be written.
+        """
+        draft = self.session.shown
+        passes = draft.sketch.graph.passes if draft is not None else ()
+        names = [spec.name for spec in passes if spec.technique.path == str(path)]
+        if draft is None or not names:
+            self.notices.say(f"{path.name} is a part of other files: no pass is filled by it alone")
+            return None
+        try:
+            with new_name(Path(draft.sketch.folder) / path.name) as copy:
+                copy.write_bytes(read_regular(path))
+        except (OSError, PlaygroundError) as error:
+            self.notices.say(f"{path.name} cannot be copied: {error}")
+            return None
+        with self.undo.step(f"Copy {path.name}"):
+            for name in names:
+                self.session.drafts.choose(name, f"./{copy.stem}")
+        self.notices.say(f"copied {path.name} into {copy.parent}; Ctrl+S has the sketch use it from now on")
+        return copy
+
     def save_as_preset(self, name: str) -> None:
         """Save the edited values as a preset of the sketch."""
         draft = self._ready()

@@ -25,7 +25,7 @@ from playground.engine.programs import warnings_of
 from playground.engine.sandbox import Sandbox
 from playground.engine.trace.live_texel import live_file
 from playground.errors import Diagnostic, PlaygroundError
-from playground.paths import DEFAULT_SKETCH, PLAIN_SKETCH
+from playground.paths import DEFAULT_SKETCH, PLAIN_SKETCH, state_folder
 from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
 from playground.sketch.find import find
 from playground.sketch.load import load
@@ -34,8 +34,8 @@ from playground.studio import theme
 from playground.studio.addition import Addition, FullScreen
 from playground.studio.bench import Host, Workbench
 from playground.studio.code.editors import Opener
-from playground.studio.code.open_files import unsaved
-from playground.studio.code.panel import draw_code
+from playground.studio.code.kept import KeptTexts
+from playground.studio.code.panel import draw_code, draw_questions
 from playground.studio.compare.panel import below_bar, drag_line, paint_both
 from playground.studio.cost.panel import draw_readout
 from playground.studio.cost.readout import Readout
@@ -82,6 +82,7 @@ if TYPE_CHECKING:
 
 FRAME = 1 / 60  # [s] between pictures while time runs
 IDLE = 1.0  # [s] between frames while nothing happens
+_TYPED = 0.05  # [s] between looks at whether what is typed is to be drawn
 _SANDBOX = 0.1  # [s] between questions to the sandbox, whose answer wakes the window
 _SETTLES = 3  # frames that the panel takes to settle after something happened
 _MAX_STEP = 0.25  # [s] time never jumps by more, however long a frame took
@@ -225,7 +226,6 @@ class Live:
         self.autosave = autosave
         self.caching = caching
         self.session = session
-        self.follower = Follower(session, watcher)
         self.panel, self.trace_panel = Panel(), TracePanel()
         self.place = WindowPlacement(lambda: window.handle)
         controls = WindowControls(
@@ -242,7 +242,9 @@ class Live:
             preferences=preferences,
             wake=wake,
             trace_sandbox=tracer,
+            kept=KeptTexts(state_folder() / "unsaved"),
         )
+        self.follower = Follower(session, watcher, self.bench.files.take_saved)
         choose_language(preferences.language)
         self.bench.tabs.append(passes_tab(self.bench))
         self.panes = PaneLayout(self.bench.panes)
@@ -306,14 +308,11 @@ class Live:
             self._settling = _SETTLES  # an error grows to its size
 
     def _stays_open(self) -> bool:
-        """Return whether the window stays; the user decides where it is to close over unsaved texts."""
+        """Return whether the window stays; what is typed and not saved is kept where it closes."""
         if self.window.open:
             return True
-        if not unsaved(self.bench.files.editing):
-            return False
-        self.window.cancel_close()
-        self.bench.files.leaving, self._settling = True, _SETTLES
-        return True
+        self.bench.files.keep_typed()
+        return False
 
     def _open(self, path: Path) -> None:
         """Open another sketch with what is remembered of it; the one that is left becomes a recent one."""
@@ -390,6 +389,8 @@ class Live:
             return 0.1
         if self.readout.waits:
             return 0.25
+        if self.bench.files.waits:
+            return _TYPED
         if imgui.get_io().want_text_input:
             return 0.1
         return IDLE
@@ -427,12 +428,15 @@ class Live:
             left += guard.draw(f"{addition.name}'s panel", addition.draw_panel, 0.0)
         if bench.interface.panel_shown:
             left += guard.draw("the panel", lambda: self.panel.draw(bench, look, left), 0.0)
+        guard.run("the files that are open", bench.follow_files, None)
         places = self.panes.place(left, bench.tabs, look)
         area = places.picture
-        quit_window = bench.window.quit
         guard.draw(
-            "the editor", lambda: draw_code(bench.files, bench.problems, quit_window, look, area), None
+            "the code",
+            lambda: self.panes.draw_code(places, lambda: draw_code(bench.files, bench.problems, look)),
+            None,
         )
+        guard.draw("the question on a file", lambda: draw_questions(bench.files), None)
         guard.draw("the strip", lambda: self.panes.draw_strip(places, bench.tabs, look), None)
         guard.draw("what a key asks for", self._act_on_keys, None)
         guard.draw("the mouse over the picture", lambda: self._act(area), None)

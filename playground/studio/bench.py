@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from playground.paths import GLSL, SKETCHES
 from playground.studio.actions import Actions
 from playground.studio.addition import Addition
 from playground.studio.code.editors import Opener
+from playground.studio.code.kept import KeptTexts
 from playground.studio.code.open_files import OpenFiles
 from playground.studio.edits.autosave import Autosave
 from playground.studio.edits.undo import Undo
@@ -46,6 +48,7 @@ class Workbench:
         preferences: Preferences | None = None,
         wake: Callable[[], None] | None = None,
         trace_sandbox: TraceSandbox | None = None,
+        kept: KeptTexts | None = None,
     ) -> None:
         folder = folder or Path.cwd()  # where pictures, masks and copies go
         self.session = session
@@ -60,10 +63,17 @@ class Workbench:
         self.actions = Actions(session, self.notices, self.undo, self.file, folder)
         self.keyframes = KeyframeEdits(session, self.notices, self.undo, self.file)
         self.passes = PassEdits(session, self.notices, self.undo, self.file)
-        self.files = OpenFiles(self.notices, opener or Opener())
         self.interface = Interface(preferences=preferences or Preferences())
         self.start = StartPage(self.actions, more=self._cards)
         self.panes = Panes(self.interface.preferences)
+        self.files = OpenFiles(
+            self.notices,
+            opener or Opener(),
+            kept=kept or KeptTexts(),
+            take_typed=session.drafts.take_typed,
+            show=self.panes.show_code,
+            copy_in=self._copy_in,
+        )
         self.tabs: list[Tab] = []  # of the strip below the picture
         self.additions: list[Addition] = []  # of the rooms that can be removed
         self.versions = Versions(self.actions, self.inspection.compare, is_left_out=self._shows_rooms_own)
@@ -83,6 +93,22 @@ class Workbench:
         graph = self.inspection.graph
         self.panes.show_strip("passes", shown=not graph.on)
         graph.gets_keys = not graph.on
+
+    def follow_files(self) -> None:
+        """Have the tabs of the code pane be those of the sketch that is shown."""
+        drafts = self.session.drafts
+        if not drafts.opening:
+            self.files.follow(drafts.path, drafts.shown.file if drafts.shown is not None else None)
+        self.panes.has_code = bool(self.files.editing)
+
+    def _copy_in(self, path: Path) -> None:
+        """Make a file that is not to be changed the sketch's own, or copy the sketch that it belongs to."""
+        if path.is_relative_to(SKETCHES) or self.session.path.is_relative_to(GLSL):
+            self.actions.save_a_copy()
+            return
+        copied = self.actions.copy_technique(path)
+        if copied is not None:
+            self.files.open(copied, here=True)
 
     def take_notes(self) -> None:
         """Show what the session and the editors report, and remove notices that are over."""

@@ -111,11 +111,17 @@ class Panes:
     preferences: Preferences
     selects: str = ""  # the tab that the strip is to show
     has_code: bool = False  # there is something to show in the code pane
+    is_narrow: bool = False  # the window: the code takes the picture's place
 
     def is_open(self, name: str, *, narrow: bool) -> bool:
         """Return whether "code" or "strip" is open; as delivered they are, but in a narrow window."""
         chosen = self.preferences.panes.get(name)
         return not narrow if chosen is None else bool(chosen)
+
+    @property
+    def code_is_open(self) -> bool:
+        """Whether the code pane is seen."""
+        return self.has_code and self.is_open("code", narrow=self.is_narrow)
 
     def show_code(self, shown: bool = True) -> None:
         """Open the code pane, or close it."""

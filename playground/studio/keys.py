@@ -19,7 +19,7 @@ from playground.sketch.traits import traits_of
 from playground.studio import theme
 from playground.studio.addition import Layer
 from playground.studio.bench import Workbench
-from playground.studio.code.panel import ask_to_close, stay
+from playground.studio.code.panel import give_back_keys, stay, typing
 from playground.studio.draw import (
     QUIET,
     ctrl_held,
@@ -77,8 +77,8 @@ def _open(bench: Workbench) -> Iterator[Layer]:
         yield "keys", bench.interface.toggle_keymap
     for addition in bench.additions:
         yield from addition.popups()
-    for editing in reversed(bench.files.editing):
-        yield f"editor {editing.text.path.name}", partial(ask_to_close, editing, bench.files)
+    for name in typing(bench.files):
+        yield f"editor {name}", partial(give_back_keys, bench.files)
     if bench.tracing.on:
         yield "trace", bench.tracing.toggle
     if inspection.graph.has_keys:
@@ -165,6 +165,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.v, "V", "the versions, or no longer", lambda b: _toggle_versions(b)),
     Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
     Key(_K.e, "E", "edit the file of the current error", lambda b: b.files.open_current(b.problems)),
+    Key(_K.e, "Ctrl+E", "the code pane, or no longer", lambda b: _toggle_code(b), ctrl=True, brief="code"),
     Key(_K.z, "Ctrl+Z", "undo", lambda b: b.undo.undo(), ctrl=True),
     Key(_K.z, "Ctrl+Shift+Z", "redo", lambda b: b.undo.redo(), ctrl=True, shift=True),
     Key(_K.y, "Ctrl+Y", "redo", lambda b: b.undo.redo(), ctrl=True),
@@ -239,6 +240,15 @@ def _paste(bench: Workbench) -> None:
     bench.actions.paste(imgui.get_clipboard_text() or "")
 
 
+def _toggle_code(bench: Workbench) -> None:
+    """Close the code pane, or open it and give it the keys."""
+    if bench.panes.code_is_open:
+        bench.panes.show_code(False)
+    elif bench.files.current is not None:
+        current = bench.files.current
+        bench.files.focus(current, current.line, current.column)
+
+
 def _visit(bench: Workbench) -> None:
     bench.actions.visit(1 if _shift_held() else -1)
 
@@ -260,6 +270,10 @@ def act_on_keys(bench: Workbench) -> None:
     if imgui.is_key_pressed(imgui.Key.escape, repeat=False):
         if not left_a_field():
             close_one(bench)
+        return
+    if typing(bench.files) and ctrl and imgui.is_key_pressed(imgui.Key.e, repeat=False):
+        bench.panes.show_code(False)
+        give_back_keys(bench.files)
         return
     if keeps_keys(bench.interface.ahead) or io.want_text_input or io.key_alt:
         return

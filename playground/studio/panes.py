@@ -27,6 +27,7 @@ _CODE = (0.2, 0.45, 0.8)  # fraction of the width: least, as delivered, most
 _STRIP = (0.15, 0.34, 0.7)  # of the height
 _PANE = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize
 _PANE |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_bring_to_front_on_focus
+_PANE |= imgui.WindowFlags_.no_focus_on_appearing
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,7 @@ class PaneLayout:
     def place(self, left: float, tabs: Sequence[Tab], look: Theme) -> Places:
         """Return where things are; ``left``: what panels take of the window's left side."""
         room = imgui.get_main_viewport().size
+        self._panes.is_narrow = self._is_narrow()
         wide, high = max(room.x - left, 1.0), room.y
         strip = (
             round(high * self._fraction("strip height", _STRIP))
@@ -73,12 +75,12 @@ class PaneLayout:
     def draw_code(self, places: Places, draw: Callable[[], None]) -> None:
         """Draw the code pane where it is open; ``draw`` draws what is in it."""
         if places.code is not None:
-            self._pane("code pane", places.code, draw)
+            draw_pane("code pane", places.code, draw)
 
     def draw_strip(self, places: Places, tabs: Sequence[Tab], look: Theme) -> None:
         """Draw the strip where it is open."""
         if places.strip is not None and tabs:
-            self._pane("strip", places.strip, lambda: self._draw_tabs(tabs, look))
+            draw_pane("strip", places.strip, lambda: self._draw_tabs(tabs, look))
 
     def _draw_tabs(self, tabs: Sequence[Tab], look: Theme) -> None:
         if not imgui.begin_tab_bar("tabs"):
@@ -92,12 +94,6 @@ class PaneLayout:
                 imgui.end_tab_item()
         self._panes.selects = ""
         imgui.end_tab_bar()
-
-    def _pane(self, name: str, area: Area, draw: Callable[[], None]) -> None:
-        imgui.set_next_window_pos(ImVec2(*area[:2]))
-        imgui.set_next_window_size(ImVec2(*area[2:]))
-        with window(name, _PANE, ground=theme.colour(theme.palette.ground)):
-            draw()
 
     # ── edges ────────────────────────────────────────────────────────────────
 
@@ -136,6 +132,14 @@ class PaneLayout:
 
     def _is_narrow(self) -> bool:
         return imgui.get_main_viewport().size.x < NARROW * imgui.get_style().font_scale_dpi
+
+
+def draw_pane(name: str, area: Area, draw: Callable[[], None]) -> None:
+    """Draw a window that stays in its place; ``draw`` draws what is in it."""
+    imgui.set_next_window_pos(ImVec2(*area[:2]))
+    imgui.set_next_window_size(ImVec2(*area[2:]))
+    with window(name, _PANE, ground=theme.colour(theme.palette.ground)):
+        draw()
 
 
 def _within(value: float, bounds: tuple[float, float, float]) -> float:

@@ -58,7 +58,7 @@ class Status:
             "stage": session.drafts.stage.name,
             "notices": [n.text for n in bench.notices.items],
             "playing": session.clock.playing,
-            "typing": typing(bench.files.editing),
+            "typing": typing(bench.files),
             "takes_text": imgui.get_io().want_text_input,
             "unsaved": unsaved(bench.files.editing),
             "map": session.view.map.ref if session.view.map else "",

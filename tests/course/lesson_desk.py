@@ -16,7 +16,6 @@ from playground.course.window.reader import Reader
 from playground.engine.engine import Engine
 from playground.paths import GLSL
 from playground.studio.bench import Host
-from playground.studio.code.panel import draw_code
 from playground.studio.edits.autosave import Autosave, memory_of
 from playground.studio.keyframes.panel import height_of_timeline
 
@@ -322,8 +321,7 @@ class Harness(Bare):
         left += self.panel.draw(self.bench, self.theme, left) if self.bench.interface.panel_shown else 0.0
         room = imgui.get_io().display_size
         area = left, 0.0, max(room.x - left, 1.0), room.y
-        bench = self.bench
-        draw_code(bench.files, bench.problems, bench.window.quit, self.theme, area)
+        self.draw_pane(area)
         assert height_of_timeline(self.session, self.bench.interface, self.theme) >= 0
         if self.picture is not None:
             self.bench.inspection.compare.follow(self.picture)

@@ -11,12 +11,14 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.engine.engine import Engine
 from playground.studio.bench import Workbench
+from playground.studio.code.kept import KeptTexts
+from playground.studio.code.panel import draw_code, draw_questions
 from playground.studio.drops import Drops
 from playground.studio.interface import Preferences, WindowControls
 from playground.studio.keys import act_on_keys, draw_keymap
 from playground.studio.overlay import draw_drops, draw_inspection
 from playground.studio.panel.panel import Panel
-from playground.studio.panes import PaneLayout
+from playground.studio.panes import PaneLayout, draw_pane
 from playground.studio.problems.panel import ErrorsList
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -26,7 +28,12 @@ class Bare:
     """A panel on a session, frame by frame, at 60 frames a second."""
 
     def __init__(
-        self, engine: Engine, path: Path, size: tuple[int, int] = (1280, 720), scale: float = 1.0
+        self,
+        engine: Engine,
+        path: Path,
+        size: tuple[int, int] = (1280, 720),
+        scale: float = 1.0,
+        kept: KeptTexts | None = None,
     ) -> None:
         self.context = imgui.create_context()
         io = imgui.get_io()
@@ -44,6 +51,7 @@ class Bare:
             folder=path,
             now=lambda: self.time,
             preferences=Preferences(panes={"terrain": 0.0}),  # folded, so that there is room for what follows
+            kept=kept,
         )
         self.drops = Drops(self.bench.actions)
         self.panel = Panel()
@@ -182,6 +190,12 @@ class Bare:
         draw_inspection(self.bench, self.picture, self.theme, area, 48 / area[2])
         draw_drops(self.drops, self.theme)
         draw_keymap(self.bench.interface, self.theme)
+
+    def draw_pane(self, area: tuple[float, float, float, float] = (780.0, 0.0, 500.0, 720.0)) -> None:
+        """Draw the code pane at a place, and the question on a file that is to be closed."""
+        files, problems = self.bench.files, self.bench.problems
+        draw_pane("code pane", area, lambda: draw_code(files, problems, self.theme))
+        draw_questions(files)
 
     def close(self) -> None:
         """End it; the engine is its owner's."""

@@ -12,7 +12,7 @@ import pytest
 from imgui_bundle import ImVec2, imgui
 
 from playground.studio.addition import Addition, Layer
-from playground.studio.code.panel import draw_code
+from playground.studio.code.panel import ask_to_close
 from playground.studio.graph.panel import passes_tab
 from playground.studio.guard import Guard
 from playground.studio.interface import SIZES, Preferences, remembered_preferences
@@ -116,8 +116,7 @@ def layers_bare(tmp_path: Path, open_bare: OpenBare, monkeypatch: pytest.MonkeyP
 
     def both() -> None:
         draw()
-        bench, area = made.bench, (330.0, 0.0, 900.0, 720.0)
-        draw_code(bench.files, bench.problems, bench.window.quit, made.theme, area)
+        made.draw_pane()
 
     monkeypatch.setattr(made, "draw", both)
     return made
@@ -191,28 +190,29 @@ def test_a_field_in_a_popup_is_left_before_the_popup(layers_bare: Bare) -> None:
     assert open_layers(layers_bare.bench) == []
 
 
-def test_esc_on_unsaved_editor_prompt_keeps_editor_open(layers_bare: Bare, tmp_path: Path) -> None:
-    layers_bare.bench.files.open(tmp_path / "terrain.glsl", here=True)
+def test_esc_gives_the_keys_back_and_closes_no_tab(layers_bare: Bare, tmp_path: Path) -> None:
+    files = layers_bare.bench.files
+    files.open(tmp_path / "terrain.glsl", here=True)
     layers_bare.run_frames(3)
     layers_bare.type("// more")
+    assert open_layers(layers_bare.bench) == ["editor terrain.glsl"]
+    escape(layers_bare)
+    assert open_layers(layers_bare.bench) == [] and len(files.editing) == 1
+    layers_bare.key(imgui.Key.m)
+    assert layers_bare.session.view.map is not None, "a key of the picture"
+
+
+def test_esc_dismisses_the_question_on_closing(layers_bare: Bare, tmp_path: Path) -> None:
+    files = layers_bare.bench.files
+    files.open(tmp_path / "terrain.glsl", here=True)
     layers_bare.run_frames(3)
+    layers_bare.type("// more")
+    ask_to_close(files.editing[0], files)
+    layers_bare.run_frames(3)
+    assert open_layers(layers_bare.bench)[0] == "popup", "it asks whether to save"
     escape(layers_bare)
-    assert open_layers(layers_bare.bench) == ["popup", "editor terrain.glsl"], "it asks whether to save"
-    escape(layers_bare)
-    assert open_layers(layers_bare.bench) == ["editor terrain.glsl"], "and stays"
+    assert len(files.editing) == 1 and "popup" not in open_layers(layers_bare.bench)
     assert "// more" not in (tmp_path / "terrain.glsl").read_text()
-
-
-def test_the_question_on_quitting_is_answered_by_esc_too(layers_bare: Bare, tmp_path: Path) -> None:
-    layers_bare.bench.files.open(tmp_path / "terrain.glsl", here=True)
-    layers_bare.run_frames(3)
-    layers_bare.type("// more")
-    layers_bare.run_frames(3)
-    layers_bare.bench.files.leaving = True
-    layers_bare.run_frames(3)
-    assert open_layers(layers_bare.bench)[0] == "popup"
-    escape(layers_bare)
-    assert not layers_bare.bench.files.leaving and open_layers(layers_bare.bench) == ["editor terrain.glsl"]
 
 
 def test_ctrl_q_quits_also_out_of_a_field(layers_bare: Bare) -> None:

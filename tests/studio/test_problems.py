@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,16 +17,13 @@ from playground.engine.non_finite import NotFinite
 from playground.engine.sandbox import SandboxReport
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError
 from playground.sketch.templates import make_sketch
-from playground.studio import overlay
 from playground.studio.bench import Workbench
 from playground.studio.code import open_files as sources
-from playground.studio.code import panel as code_window
 from playground.studio.code.editors import Editor
 from playground.studio.code.open_files import typed_in, unsaved
-from playground.studio.code.panel import draw_code
-from playground.studio.draw import plate, plate_size
+from playground.studio.code.panel import ask_to_close
 from playground.studio.interface import WindowControls
-from playground.studio.overlay import PATIENCE, checking_text, draw_notices
+from playground.studio.overlay import PATIENCE, checking_text
 from playground.studio.problems import panel as errors_list
 from playground.studio.problems.non_finite import REST, FiniteWatch, summary
 from playground.studio.problems.panel import place_in, ref_of
@@ -190,8 +185,8 @@ class Harness(Bare):
     """The panel with the list and the editor."""
 
     def draw(self) -> None:
-        area = (330.0, 0.0, 950.0, 720.0)
-        draw_code(self.bench.files, self.bench.problems, self.bench.window.quit, self.theme, area)
+        area = (330.0, 0.0, 450.0, 720.0)
+        self.draw_pane()
         self.bench.problems.take(self.session.error)
         errors_of(self.bench).draw(self.theme, area)
         super().draw()
@@ -298,10 +293,8 @@ def test_without_an_editor_it_opens_here_is_edited_and_saved(
     assert unsaved(harness.bench.files.editing), "what was saved is no longer what is seen"
 
 
-@pytest.mark.parametrize("answer", ["Take theirs", "Save mine", "Go on typing"])
-def test_a_file_that_others_saved_meanwhile_needs_an_answer(
-    harness: Harness, folder: Path, answer: str
-) -> None:
+def test_what_others_saved_while_it_was_typed_is_one_undo_away(harness: Harness, folder: Path) -> None:
+    """The newer is shown, and saved: here what is typed."""
     wave = folder / "wave.glsl"
     harness.bench.files.open(wave, 4, 1, here=True)
     harness.run_frames(3)
@@ -309,16 +302,33 @@ def test_a_file_that_others_saved_meanwhile_needs_an_answer(
     theirs = "// wave.glsl -- theirs" + WAVE[WAVE.index("\n") :]
     wave.write_text(theirs, encoding="utf-8")
     harness.key(imgui.Key.mod_ctrl, imgui.Key.s)
-    assert wave.read_text(encoding="utf-8") == theirs, "not overwritten"
-    harness.run_frames(3)
     mine = WAVE.replace("}", "// mine }")
-    harness.click(answer)
-    editing = harness.bench.files.editing
-    assert wave.read_text(encoding="utf-8") == (mine if answer == "Save mine" else theirs)
-    assert bool(unsaved(editing)) == (answer == "Go on typing")
-    if answer != "Go on typing":
-        harness.key(imgui.Key.mod_ctrl, imgui.Key.z)
-        assert typed_in(editing[0]) == (theirs if answer == "Save mine" else mine), "nothing is lost"
+    assert wave.read_text(encoding="utf-8") == mine and not unsaved(harness.bench.files.editing)
+    harness.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    assert typed_in(harness.bench.files.editing[0]) == theirs, "nothing is lost"
+
+
+def test_what_others_save_is_shown_and_what_was_typed_is_one_undo_away(
+    harness: Harness, folder: Path
+) -> None:
+    """The newer is shown: here what others saved."""
+    wave, files = folder / "wave.glsl", harness.bench.files
+    files.open(wave, 4, 1, here=True)
+    harness.run_frames(3)
+    harness.type("// mine ")
+    harness.run_frames(20)
+    assert harness.session.drafts.unsaved
+    theirs = "// wave.glsl -- theirs" + WAVE[WAVE.index("\n") :]
+    wave.write_text(theirs, encoding="utf-8")
+    files.take_saved({wave})
+    (editing,) = files.editing
+    assert editing.view.written() == theirs and not unsaved(files.editing)
+    assert not harness.session.drafts.unsaved
+    harness.run_frames(2)
+    harness.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    assert typed_in(editing) == WAVE.replace("}", "// mine }")
+    files.take_saved({wave})
+    assert typed_in(editing), "its own save, or another file's, takes nothing back"
 
 
 @pytest.mark.parametrize(
@@ -355,63 +365,23 @@ def test_new_lines_are_indented_as_the_file_is(
     assert editor.get_text() == text
 
 
-@pytest.mark.parametrize("right", [False, True])
-def test_notices_leave_the_close_button_free(
-    harness: Harness, folder: Path, monkeypatch: pytest.MonkeyPatch, right: bool
-) -> None:
-    plates: list[tuple[imgui.ImVec2, imgui.ImVec2]] = []
-
-    def noted(paint: object, text: str, place: tuple[float, float], **more: Any) -> imgui.ImVec2:
-        corner = plate(paint, text, place, **more)  # type: ignore[arg-type]
-        plates.append((corner - plate_size(text, more["padding"], more["wrap"]), corner))
-        return corner
-
-    monkeypatch.setattr(overlay, "plate", noted)
-    harness.bench.files.open(folder / "wave.glsl", here=True)
-    for text in ("saved wave.glsl", "a long notice " * 20, "another"):
-        harness.bench.notices.say(text)
-    area = (330.0, 0.0, 950.0, 720.0)
-    draw = harness.draw
-    monkeypatch.setattr(
-        harness, "draw", lambda: (draw(), draw_notices(harness.bench.notices, harness.theme, area))[0]
-    )
-    if right:  # where the button's left edge is under the notices' right edge
-        monkeypatch.setattr(code_window, "window_place", lambda *_: (700.0, 30.0, 560.0, 300.0))
-    harness.run_frames(4)
-    shown = imgui.internal.find_window_by_name("wave.glsl###wave.glsl")
-    edge, top, high = shown.pos.x + shown.size.x, shown.pos.y, imgui.get_frame_height()
-    assert len(plates) == 12
-    for low, corner in plates[-3:]:
-        assert corner.x < edge - high or low.x > edge or corner.y < top or low.y > top + high
-        assert low.y >= 14.0 and corner.x <= 1280.0 - 14.0
-    for (_, above), (below, _) in itertools.pairwise(plates[-3:]):
-        assert below.y > above.y
-
-
 @pytest.mark.parametrize(
-    ("button", "mine", "open_after"), [("Save and close", True, 0), ("Close", False, 0), ("Stay", False, 1)]
+    ("button", "mine", "open_after"),
+    [
+        ("Save and close###save and close", True, 0),
+        ("Close without saving###close", False, 0),
+        ("Stay###stay", False, 1),
+    ],
 )
 def test_closing_asks(harness: Harness, folder: Path, button: str, mine: bool, open_after: int) -> None:
     harness.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
     harness.run_frames(3)
     harness.type("// mine ")
-    harness.bench.files.editing[0].view.closing = True
+    ask_to_close(harness.bench.files.editing[0], harness.bench.files)
     harness.run_frames(3)
     harness.click(button)
     assert ("mine" in (folder / "wave.glsl").read_text(encoding="utf-8")) == mine
     assert len(harness.bench.files.editing) == open_after
-
-
-@pytest.mark.parametrize(("button", "quits"), [("Save and quit", True), ("Quit", True), ("Stay", False)])
-def test_quitting_asks(harness: Harness, folder: Path, button: str, quits: bool) -> None:
-    harness.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
-    harness.run_frames(3)
-    harness.type("// mine ")
-    harness.bench.files.leaving = True
-    harness.run_frames(3)
-    harness.click(button)
-    assert harness.quits == quits
-    assert ("mine" in (folder / "wave.glsl").read_text(encoding="utf-8")) == (button == "Save and quit")
 
 
 def test_a_file_that_is_gone_is_a_sentence(harness: Harness, folder: Path) -> None:

@@ -57,7 +57,6 @@ from playground.shader.parameter import write
 from playground.sketch.assign import resolve
 from playground.sketch.find import find
 from playground.studio import theme
-from playground.studio.code.panel import save
 from playground.studio.draw import SIDE_PANEL, button, fitting, inked, pushed_id, styled, window
 from playground.studio.edits.history import History
 from playground.studio.panel.parameter_list import PanelState, items_of, shown_values
@@ -391,7 +390,7 @@ def _check(block: Exercise, page: Page) -> None:
     tasks, files = page.reader.tasks, page.reader.bench.files
     editing = files.copy_of(path_of(block)) if block.file else None
     if editing is not None and editing.view is not None and editing.view.changed and tasks.is_begun(block):
-        save(editing, page.reader.bench.notices)
+        files.save(editing)
     tasks.check(block)
 
 

@@ -1,6 +1,8 @@
-"""Files that are open in windows of our own or in the user's editor.
+"""Files that are open in the code pane or in the user's editor.
 
-A text file is read, saved whole, and never over what others saved meanwhile.
+A text file is read, and saved whole. What is typed is drawn without being saved, and kept in the user's state
+folder until it is: a window that is closed asks nothing. Where a file is saved by others while something is
+typed here, the newer of the two is shown, and the other is one undo away.
 """
 
 from __future__ import annotations
@@ -8,16 +10,22 @@ from __future__ import annotations
 import os
 import shutil
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
+from playground.allowed_files import TEXTS, signature
 from playground.errors import DataError, Diagnostic, PlaygroundError
 from playground.files import partial_file, read_regular, reason
 from playground.memo import INTERFACE
-from playground.paths import shown, without_part
+from playground.paths import GLSL, SKETCHES, shown, without_part
+from playground.shader.libraries import libraries, library_around
+from playground.sketch.model import Sketch
 from playground.studio.code.editors import Opener, find_editor
+from playground.studio.code.kept import KeptTexts, hash_of_text
+from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named
@@ -123,23 +131,46 @@ class TextView(Protocol):
     def written(self) -> str:
         """Return the text as it is in the editor."""
 
+    def replace(self, text: str) -> None:
+        """Replace the text as one step that can be undone."""
+
+    def note_saved(self) -> None:
+        """Take in that the text as it is now is that of the file."""
+
 
 @dataclass(eq=False)
 class Editing:
-    """A file that is open in a window of our own, and where it is to be looked at."""
+    """A file that is open in the code pane, and where it is to be looked at."""
 
     text: OpenText
     line: int = 1
     column: int = 1
     focus: bool = True  # it is to come to the front, at its line
     view: TextView | None = None  # None until it is drawn for the first time
+    typed_before: str | None = None  # what was typed when the window was closed, where it is not saved
+    is_older: bool = False  # than what the file holds: one undo away
+
+    @property
+    def belongs_to(self) -> str:
+        """What it belongs to where it is not to be changed: "library", "sketch" (a shipped one); or ""."""
+        path = self.text.path
+        if not self.text.needs_saving:  # a copy of a lesson's
+            return ""
+        if path.is_relative_to(GLSL) or library_around(path, libraries()):
+            return "sketch" if path.is_relative_to(SKETCHES) else "library"
+        return ""
 
 
 def unsaved(open_files: Iterable[Editing]) -> list[str]:
     """Return the names of open files with changes that are not saved."""
-    return [
-        e.text.path.name for e in open_files if e.text.needs_saving and e.view is not None and e.view.changed
-    ]
+    return [e.text.path.name for e in open_files if e.text.needs_saving and is_changed(e)]
+
+
+def is_changed(editing: Editing) -> bool:
+    """Return whether an open file has changes that are not saved."""
+    if editing.view is None:
+        return editing.typed_before is not None and not editing.is_older
+    return editing.view.changed
 
 
 def typed_in(editing: Editing) -> str | None:
@@ -148,29 +179,66 @@ def typed_in(editing: Editing) -> str | None:
     return view.written() if view is not None and view.changed else None
 
 
+def own_files(sketch: Sketch) -> list[Path]:
+    """Return the texts of a sketch that are its own: its file, then the kernels in its folder."""
+    main, folder = Path(sketch.file), Path(sketch.folder)
+    texts = [Path(name) for name in sketch.files if Path(name).suffix in TEXTS]
+    own = [path for path in texts if path.is_relative_to(folder) and not _is_library(path)]
+    return list(dict.fromkeys([main, *own]))
+
+
+def library_files(sketch: Sketch) -> list[Path]:
+    """Return the texts of the library that a sketch is made of."""
+    return [path for name in sketch.files if (path := Path(name)).suffix in TEXTS and _is_library(path)]
+
+
+def _is_library(path: Path) -> bool:
+    return path.is_relative_to(GLSL) and not path.is_relative_to(SKETCHES)
+
+
+def _saved_at(path: Path) -> int:
+    """Return when a file was saved [ns since the epoch]; 0 where there is none."""
+    found = signature(path)
+    return 0 if found is None else found.modified
+
+
 _LOOK_AGAIN = 5.0  # [s]
+
+
+MAX_TABS = 8
+"""Files of a sketch that are open from the beginning."""
 
 
 @dataclass
 class OpenFiles:
-    """The files that are open in windows of our own, and what opens others."""
+    """The files that are open in the code pane, and what opens others."""
 
     notices: Notices
     opener: Opener = field(default_factory=Opener)  # starts the user's editor
-    editing: list[Editing] = field(default_factory=list)
+    editing: list[Editing] = field(default_factory=list)  # in the order of their tabs
+    current: Editing | None = None  # the one that is seen
     copy_of: Callable[[Path], Editing | None] = lambda path: None  # what is drawn in place of a file
-    leaving: bool = False  # the window is to close, and something is not saved: the user decides what to do
+    kept: KeptTexts = field(default_factory=KeptTexts)
+    take_typed: Callable[[Path, str | None], None] = lambda path, text: None  # draws it; None: the file
+    show: Callable[[], None] = lambda: None  # opens the code pane
+    copy_in: Callable[[Path], None] = lambda path: None  # makes a file of the library the sketch's own
+    waits: bool = False  # something is typed that is not drawn yet
+    jumps: bool = False  # the pane is to show ``current``
+    sketch: Sketch | None = None  # that is shown
+    _followed: tuple[Path | None, bool] = (None, False)
+
+    # ── opening ──────────────────────────────────────────────────────────────
 
     def open(self, path: Path, line: int = 0, column: int = 0, *, here: bool = False) -> None:
         """Open a file at a line and a column, both from 1, 0 where unknown.
 
-        ``here``: in a window of our own.
+        ``here``: in the code pane.
         """
         if not path.is_file():
             self.notices.say(f"there is no file {shown(path)} to open")
             return
         copy = self.copy_of(path)
-        open_file = copy or next((item for item in self.editing if item.text.path == path), None)
+        open_file = copy or self.at(path)
         if not here and copy is None:
             editor, complaint = find_editor()
             if complaint:
@@ -180,17 +248,149 @@ class OpenFiles:
                 return
         if open_file is None:
             try:
-                open_file = Editing(OpenText.read(path))
+                open_file = self._read(path)
             except PlaygroundError as error:
                 self.notices.say(str(error))
                 return
         self.focus(open_file, line, column)
 
+    def at(self, path: Path) -> Editing | None:
+        """Return the tab of a file; None where it has none."""
+        return next((item for item in self.editing if item.text.path == path), None)
+
     def focus(self, editing: Editing, line: int = 1, column: int = 1) -> None:
-        """Bring an open file to the front at a place, also where its window was closed."""
+        """Bring an open file to the front at a place, also where its tab was closed."""
         if all(other is not editing for other in self.editing):
             self.editing.append(editing)
         editing.line, editing.column, editing.focus = max(line, 1), max(column, 1), True
+        self.show()
+
+    def follow(self, path: Path, sketch: Sketch | None) -> None:
+        """Have the tabs of the sketch in a file, once it is shown: its own file, and its own kernels.
+
+        Tabs of another with nothing unsaved in them close.
+        """
+        self.sketch = sketch
+        if self._followed == (path, sketch is not None):
+            return
+        is_other, self._followed = self._followed[0] != path, (path, sketch is not None)
+        files = own_files(sketch)[:MAX_TABS] if sketch is not None else [path]
+        if is_other:
+            kept = [e for e in self.editing if e.text.path in files or is_changed(e) or e.focus]
+            self.editing[:] = kept
+        for file in files:
+            if self.at(file) is None and file.is_file():
+                with suppress(PlaygroundError):
+                    editing = self._read(file)
+                    editing.focus = False
+                    self.editing.append(editing)
+        if self.current is None or all(e is not self.current for e in self.editing):
+            self.current = next((e for e in self.editing if e.text.path.suffix != ".toml"), None)
+            self.current = self.current or next(iter(self.editing), None)
+            self.jumps = self.current is not None
+
+    def own(self) -> list[Path]:
+        """Return the sketch's own files."""
+        return [] if self.sketch is None else own_files(self.sketch)
+
+    def _read(self, path: Path) -> Editing:
+        """Return a file with what was typed in it the last time and not saved, which is drawn."""
+        editing = Editing(OpenText.read(path))
+        kept = self.kept.of(path)
+        if kept is None or kept.text == editing.text.base or editing.belongs_to:
+            return editing
+        editing.typed_before = kept.text
+        editing.is_older = kept.over != hash_of_text(editing.text.base) and kept.time < _saved_at(path)
+        if editing.is_older:
+            self.notices.say(tr("{file} was saved since; undo brings back what was typed", file=path.name))
+        else:
+            self.notices.say(tr("{file} has what was typed and not saved", file=path.name))
+            self.take_typed(path, kept.text)
+        return editing
+
+    # ── typing and saving ────────────────────────────────────────────────────
+
+    def draw_typed(self, editing: Editing) -> None:
+        """Draw what is typed in a file, and keep it; a lesson's copy is drawn when it is saved."""
+        if editing.view is None or not editing.text.needs_saving:
+            return
+        path, text = editing.text.path, editing.view.written()
+        if text == editing.text.base:
+            self.kept.forget(path)
+            self.take_typed(path, None)
+            return
+        try:
+            self.kept.keep(path, text, editing.text.base)
+        except (PlaygroundError, OSError) as error:
+            self.notices.say(tr("what is typed cannot be kept: {reason}", reason=error))
+        self.take_typed(path, text)
+
+    def keep_typed(self) -> None:
+        """Keep what is typed in all files: the window closes."""
+        for editing in self.editing:
+            text = typed_in(editing)
+            if text is not None and editing.text.needs_saving:
+                with suppress(PlaygroundError, OSError):
+                    self.kept.keep(editing.text.path, text, editing.text.base)
+
+    def save(self, editing: Editing) -> bool:
+        """Save an open file; return whether that worked.
+
+        Where others saved it meanwhile, what is typed here is the newer; theirs is one undo away.
+        """
+        view, text = editing.view, editing.text
+        if view is None:
+            return False
+        mine = view.written()
+        try:
+            if not text.save(mine):
+                with suppress(PlaygroundError):  # the file may be gone
+                    view.replace(OpenText.read(text.path).base)
+                    view.replace(mine)
+                    note = "undo brings back what others had saved of {file}"
+                    self.notices.say(tr(note, file=text.path.name))
+                text.save(mine, over=True)
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return False
+        view.note_saved()
+        if text.needs_saving:
+            self.kept.forget(text.path)
+            self.take_typed(text.path, None)
+        self.notices.say(text.saved())
+        return True
+
+    def close(self, editing: Editing) -> None:
+        """Close a tab; what is typed in it and not saved is taken back."""
+        self.editing[:] = [other for other in self.editing if other is not editing]
+        if editing.text.needs_saving and is_changed(editing):
+            self.kept.forget(editing.text.path)
+            self.take_typed(editing.text.path, None)
+
+    def take_saved(self, changed: Collection[Path]) -> None:
+        """Show what others saved of open files; what is typed here and not saved is one undo away."""
+        for editing in self.editing:
+            text, view = editing.text, editing.view
+            if text.path not in changed or not text.needs_saving or not text.changed_outside():
+                continue
+            was_changed, mine = is_changed(editing), view.written() if view is not None else None
+            try:
+                theirs = text.reload()
+            except PlaygroundError:  # it is gone, or no text: what is typed stays
+                continue
+            if view is not None and theirs != mine:
+                view.replace(theirs)
+            if view is not None:
+                view.note_saved()
+            if was_changed:
+                editing.is_older = True
+                self.kept.forget(text.path)
+                self.take_typed(text.path, None)
+                if theirs != mine:
+                    note = "{file} was saved by others; undo brings back what was typed"
+                    self.notices.say(tr(note, file=text.path.name))
+
+    # ── mistakes ─────────────────────────────────────────────────────────────
 
     def open_problem(self, diagnostic: Diagnostic, *, here: bool = False) -> None:
         """Open the file that a mistake is in, at its place."""
@@ -201,9 +401,9 @@ class OpenFiles:
         self.open(path_named(diagnostic.file), *position, here=here)
 
     def open_current(self, problems: Problems) -> None:
-        """Open the file of the current mistake, at first of the first."""
+        """Open the file of the current mistake in the code pane, at first of the first."""
         if problems.all:
-            self.open_problem(problems.all[max(problems.at, 0)])
+            self.open_problem(problems.all[max(problems.at, 0)], here=True)
         else:
             self.notices.say("no errors, so nothing to edit")
 
@@ -214,7 +414,7 @@ class OpenFiles:
 
 
 def editor_name() -> str:
-    """Return what a click on a place opens: "code", "vim"; "" for the window of our own."""
+    """Return what a click on a place opens: "code", "vim"; "" for the code pane."""
     return _name_at(int(time.monotonic() / _LOOK_AGAIN))
 
 

@@ -1,26 +1,28 @@
-"""A small text editor in the window: for a quick repair, or where there is no other.
+"""The code pane: tabs with the texts of the sketch, which are drawn as they are typed.
 
-A text is indented as its own lines are.
+A quarter of a second after the last key what is typed goes to the sandbox, without being saved; the last
+good picture stays until it has proved good. A text is indented as its own lines are; undo goes by words and
+pauses.
 """
 
 from __future__ import annotations
 
 import re
 import textwrap
+from bisect import bisect_left, bisect_right
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import imgui_color_text_edit as text_edit
 
-from playground.errors import Diagnostic, PlaygroundError
-from playground.paths import without_part
+from playground.errors import Diagnostic
+from playground.paths import shown, without_part
 from playground.studio import theme
-from playground.studio.code.open_files import Editing, OpenFiles, OpenText, unsaved
-from playground.studio.draw import QUIET, Area, button, buttons, ctrl_held, styled
-from playground.studio.notices import Notices
+from playground.studio.code.open_files import Editing, OpenFiles, library_files
+from playground.studio.draw import button, buttons, ctrl_held, styled
+from playground.studio.language import tr
 from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named
 from playground.studio.theme import Theme
@@ -86,21 +88,18 @@ def _indent_of(line: str) -> str:
     return match[0] if match else ""
 
 
-# ── the editor ────────────────────────────────────────────────────────────────
+# ── one text ──────────────────────────────────────────────────────────────────
 
 
-_MAX_HEIGHT = 0.46  # fraction of the picture's height, so that the list below stays visible
-_CLASH = "Saved by others meanwhile"
-_CLOSING = "Close without saving?"
-_LEAVING = "Quit without saving?"
-_CLASH_ANSWERS = (
-    ("Take theirs", "Reads the file again; Undo brings back what was typed here"),
-    ("Save mine", "Overwrites what others saved; Undo brings that back"),
-    ("Go on typing", ""),
-)
+PATIENCE = 0.25
+"""[s] after the last key until what is typed is drawn."""
+
+_PAUSE = 0.8  # [s] after which what is typed is a step of undo of its own
 _ENTER = (imgui.Key.enter, imgui.Key.keypad_enter)
-_OWNER = 1  # of these keys, while they are taken from the library: any number but 0
+_OWNER = 1  # of keys, while they are taken from the library: any number but 0
 _BOX = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
+_TEXT = "##text"  # the editor's own window
+_Pos = text_edit.TextEditor.DocPos
 
 
 @dataclass
@@ -110,9 +109,13 @@ class _View:
     editor: text_edit.TextEditor
     step: str  # one step of indentation
     saved_at: int = 0  # the editor's undo index when its text was that of the file
-    marked: tuple[Diagnostic, ...] = ()
-    clash: str = ""  # why it could not be saved; the user decides what to do
-    closing: bool = False  # a question is shown: save or discard
+    index: int = 0  # its undo index in the last frame
+    steps: list[int] = field(default_factory=list)  # undo indices between words and pauses, in order
+    typed_at: float = 0.0  # [s] of imgui's clock
+    waits: bool = False  # what is typed is not drawn yet
+    marked: tuple[object, tuple[Diagnostic, ...]] = (None, ())
+    closing: bool = False  # a question is shown: save or not
+    is_light: bool | None = None  # its colours
     focused_for: int = 0  # frames for which it has had the keys
 
     @property
@@ -122,17 +125,125 @@ class _View:
     def written(self) -> str:
         return self.editor.get_text()
 
+    def replace(self, text: str) -> None:
+        is_fixed = self.editor.is_read_only_enabled()
+        self.editor.set_read_only_enabled(False)
+        at = self.editor.get_main_cursor_position()
+        self.editor.select_all()
+        _insert(self, text)
+        line = min(at.line, self.editor.get_line_count() - 1)
+        self.editor.set_cursor(_Pos(line, min(at.index, len(self.editor.get_line_text(line)))))
+        self.editor.set_read_only_enabled(is_fixed)
+        self._note_step()
 
-def draw_code(
-    files: OpenFiles, problems: Problems, quit_window: Callable[[], None], look: Theme, area: Area
-) -> None:
-    """Draw every file that is open in the window, and the questions about those that are not saved."""
-    with styled({imgui.Col_.modal_window_dim_bg: theme.colour((0.0, 0.0, 0.0), 0.45)}):
-        for at, editing in enumerate(list(files.editing)):
-            if not _draw(editing, files.notices, problems, look, window_place(area, at, look.scale)):
-                files.editing.remove(editing)
-        if files.leaving:
-            _ask_to_leave(files, quit_window)
+    def note_saved(self) -> None:
+        self.saved_at = self.editor.get_undo_index()
+        self.waits = False
+
+    def undo(self) -> None:
+        """Undo what was typed since the last end of a word, pause or other change."""
+        at = bisect_left(self.steps, self.editor.get_undo_index())
+        goal = self.steps[at - 1] if at else 0
+        while self.editor.can_undo() and self.editor.get_undo_index() > goal:
+            self.editor.undo()
+
+    def redo(self) -> None:
+        """Do again what ``undo`` took back last."""
+        at = bisect_right(self.steps, self.editor.get_undo_index())
+        goal = self.steps[at] if at < len(self.steps) else None
+        while self.editor.can_redo() and (goal is None or self.editor.get_undo_index() < goal):
+            self.editor.redo()
+
+    def follow(self, now: float) -> bool:
+        """Take in what was typed in the last frame; return whether there was anything."""
+        index = self.editor.get_undo_index()
+        if index == self.index:
+            return False
+        if index == self.index + 1 and (now - self.typed_at > _PAUSE or self._begins_word()):
+            del self.steps[bisect_left(self.steps, self.index) :]
+            self.steps.append(self.index)
+        self.index, self.typed_at = index, now
+        return True
+
+    def _note_step(self) -> None:
+        """Make the last change a step of undo of its own."""
+        index = self.editor.get_undo_index()
+        self.steps = [step for step in self.steps if step < index - 1] + [index - 1, index]
+        self.index = index
+
+    def _begins_word(self) -> bool:
+        """Return whether the letter before the cursor is the first of a word, or begins a line."""
+        at = self.editor.get_main_cursor_position()
+        before = self.editor.get_line_text(at.line)[: at.index]
+        return not before.strip() or re.search(r"(?:^|\W)\w$", before) is not None
+
+
+def _view_of(editing: Editing) -> _View:
+    if not isinstance(editing.view, _View):
+        editor, language = text_edit.TextEditor(), text_edit.TextEditor.Language
+        # It has none for TOML: what Python's colours are comments, strings, numbers.
+        editor.set_language(language.python() if editing.text.path.suffix == ".toml" else language.glsl())
+        step = step_of(editing.text.base)
+        editor.set_tab_size(len(step.expandtabs(4)))
+        editor.set_insert_spaces_on_tabs(False)  # else the text's own tabs would become spaces
+        editor.set_show_whitespaces_enabled(False)
+        editor.set_complete_paired_glyphs(False)  # it would add a second one to each that is typed
+        editor.set_show_matching_brackets(True)
+        editor.set_text(editing.text.base)
+        editor.set_insert_spaces_on_tabs(step != "\t")
+        view = editing.view = _View(editor, step, editor.get_undo_index(), editor.get_undo_index())
+        if editing.typed_before is not None:
+            view.replace(editing.typed_before)
+        if editing.is_older:
+            view.replace(editing.text.base)
+            view.note_saved()
+        editor.set_read_only_enabled(bool(editing.belongs_to))
+    return editing.view
+
+
+def typing(files: OpenFiles) -> list[str]:
+    """Return the name of the open file that has the keys, once it does; none where no file does."""
+    return [e.text.path.name for e in files.editing if isinstance(e.view, _View) and e.view.focused_for > 1]
+
+
+# ── the pane ──────────────────────────────────────────────────────────────────
+
+
+_TABS = imgui.TabBarFlags_.reorderable | imgui.TabBarFlags_.fitting_policy_scroll
+
+
+def draw_code(files: OpenFiles, problems: Problems, look: Theme) -> None:
+    """Draw the code pane's contents into the current window."""
+    seen: Editing | None = None
+    if imgui.begin_tab_bar("files", _TABS):
+        for editing in list(files.editing):
+            if _draw_tab(editing, files):
+                seen = editing
+        if imgui.tab_item_button("+###other files", imgui.TabItemFlags_.trailing):
+            imgui.open_popup("other files")
+        imgui.set_item_tooltip(tr("Another file of the sketch, or of the library that it uses"))
+        _draw_others(files)
+        imgui.end_tab_bar()
+    for editing in files.editing:
+        if editing is not seen and isinstance(editing.view, _View):
+            editing.view.focused_for = 0
+    if seen is not None:
+        files.current = seen
+        _draw_text(seen, files, problems, look)
+    waiting = [e for e in files.editing if isinstance(e.view, _View) and e.view.waits]
+    for editing in waiting:
+        view = _view_of(editing)
+        if imgui.get_time() - view.typed_at >= PATIENCE or editing is not seen:
+            view.waits = False
+            files.draw_typed(editing)
+    files.waits = any(_view_of(e).waits for e in waiting)
+
+
+def draw_questions(files: OpenFiles) -> None:
+    """Draw the question on a file that is to be closed with changes that are not saved."""
+    for editing in list(files.editing):
+        if isinstance(editing.view, _View) and editing.view.closing:
+            _ask_to_close(editing, editing.view, files)
 
 
 def ask_to_close(editing: Editing, files: OpenFiles) -> None:
@@ -141,103 +252,93 @@ def ask_to_close(editing: Editing, files: OpenFiles) -> None:
     if view.changed and editing.text.needs_saving:
         view.closing = True
     else:
-        files.editing.remove(editing)
+        files.close(editing)
 
 
 def stay(files: OpenFiles) -> None:
-    """Dismiss every question about unsaved changes; nothing is saved or closed."""
-    files.leaving = False
+    """Dismiss every question; nothing is saved or closed."""
     for editing in files.editing:
-        view = _view_of(editing)
-        view.clash, view.closing = "", False
+        if isinstance(editing.view, _View):
+            editing.view.closing = False
 
 
-def typing(open_files: Iterable[Editing]) -> list[str]:
-    """Return the name of the open file that has the keys, once it does; none where no file does."""
-    return [e.text.path.name for e in open_files if _view_of(e).focused_for > 1]
+def give_back_keys(files: OpenFiles) -> None:
+    """Give the keys back to the picture."""
+    imgui.set_window_focus(None)
+    for editing in files.editing:
+        if isinstance(editing.view, _View):
+            editing.view.focused_for = 0
 
 
-def save(editing: Editing, notices: Notices, *, over: bool = False) -> bool:
-    """Save an open file; return whether that worked. Where others saved it meanwhile, the user decides."""
+def _draw_tab(editing: Editing, files: OpenFiles) -> bool:
+    """Draw the tab of one file; return whether it is the one that is seen."""
+    view, flags = _view_of(editing), 0
+    if view.changed and editing.text.needs_saving:
+        flags |= imgui.TabItemFlags_.unsaved_document
+    if editing.focus or (files.current is editing and files.jumps):
+        flags |= imgui.TabItemFlags_.set_selected
+        files.jumps = False
+    label = editing.text.path.name if editing.text.needs_saving else editing.text.title
+    name = f"{label}###{editing.text.title} {'' if editing.text.needs_saving else 'copy'}"
+    is_seen, stays = imgui.begin_tab_item(name, True, flags)
+    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+        imgui.set_tooltip(editing.text.title)
+    if is_seen:
+        imgui.end_tab_item()
+    if stays is False:
+        ask_to_close(editing, files)
+    return bool(is_seen)
+
+
+def _draw_others(files: OpenFiles) -> None:
+    """Draw the list of the sketch's files that have no tab."""
+    if not imgui.begin_popup("other files"):
+        return
+    sketch = files.sketch
+    others = [] if sketch is None else [*files.own(), *library_files(sketch)]
+    for path in others:
+        if files.at(path) is None and imgui.menu_item_simple(shown(path)):
+            files.open(path, here=True)
+    imgui.end_popup()
+
+
+def _draw_text(editing: Editing, files: OpenFiles, problems: Problems, look: Theme) -> None:
     view = _view_of(editing)
-    try:
-        if not editing.text.save(view.written(), over=over):
-            view.clash = "The file is another than when it was opened here."
-            return False
-    except PlaygroundError as error:
-        notices.say(str(error))
-        return False
-    view.saved_at = view.editor.get_undo_index()
-    notices.say(editing.text.saved())
-    return True
-
-
-def _view_of(editing: Editing) -> _View:
-    if not isinstance(editing.view, _View):
-        editor = text_edit.TextEditor()
-        if editing.text.path.suffix != ".toml":
-            editor.set_language(text_edit.TextEditor.Language.glsl())
-        step = step_of(editing.text.base)
-        editor.set_tab_size(len(step.expandtabs(4)))
-        editor.set_insert_spaces_on_tabs(False)  # else the text's own tabs would become spaces
-        editor.set_show_whitespaces_enabled(False)
-        editor.set_complete_paired_glyphs(False)  # it would add a second one to each that is typed
-        editor.set_text(editing.text.base)
-        editor.set_insert_spaces_on_tabs(step != "\t")
-        editing.view = _View(editor, step, editor.get_undo_index())
-    return editing.view
-
-
-def window_place(area: Area, at: int, scale: float) -> Area:
-    """Return where the window of one of several files appears."""
-    x, y, wide, high = area
-    size = min(wide * 0.7, 720 * scale), min(high * _MAX_HEIGHT, 640 * scale)
-    step = at * 24 * scale
-    return x + max(wide - size[0] - 14 * scale - step, 0.0), y + 14 * scale + step, *size
-
-
-def _draw(editing: Editing, notices: Notices, problems: Problems, look: Theme, area: Area) -> bool:
-    """Draw one file; return False once it is closed."""
-    view = _view_of(editing)
-    imgui.set_next_window_size(ImVec2(*area[2:]), imgui.Cond_.appearing)
-    imgui.set_next_window_pos(ImVec2(*area[:2]), imgui.Cond_.appearing)
+    if view.is_light is not theme.palette.is_light:
+        view.is_light = theme.palette.is_light
+        of = text_edit.TextEditor
+        view.editor.set_palette(of.get_light_palette() if view.is_light else of.get_dark_palette())
+    focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows)
+    view.focused_for = view.focused_for + 1 if focused and not editing.focus else 0
+    _mark(editing, view, problems)
+    _draw_bar(editing, view, files, look)
+    if focused:
+        _take_keys(editing, view, files)
     if editing.focus:
-        imgui.set_next_window_focus()
-    flags = QUIET | imgui.WindowFlags_.no_collapse
-    if view.changed:
-        flags |= imgui.WindowFlags_.unsaved_document
-    colours = {
-        imgui.Col_.window_bg: theme.colour(theme.palette.ground, 0.98),
-        imgui.Col_.title_bg_active: theme.colour(theme.palette.raised),
-    }
-    with styled(colours):
-        star = " *" if view.changed else ""
-        _, stays = imgui.begin(f"{editing.text.title}{star}###{editing.text.title}", True, flags)
-        focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows)
-        view.focused_for = view.focused_for + 1 if focused and not editing.focus else 0
-        if focused:
-            _take_keys(editing, notices)
-        _mark(editing, view, problems)
-        _bar(editing, view, notices, look)
-        if editing.focus:
-            editing.focus = False
-            view.editor.set_cursor(text_edit.TextEditor.DocPos(editing.line - 1, editing.column - 1))
-            view.editor.scroll_to_line(editing.line - 1, text_edit.TextEditor.Scroll.align_middle)
-            view.editor.set_focus()
-        if focused and not imgui.is_any_item_active():  # Enter in the search field finds
-            _indent(view)
-        with look.font(look.code):
-            view.editor.render("##text", ImVec2(0, 0))
-        if stays is False and view.changed and editing.text.needs_saving:
-            view.closing, stays = True, True
-        stays = _ask(editing, view, notices) and stays is not False
-        imgui.end()
-    return stays
+        editing.focus = False
+        imgui.set_window_focus()
+        view.editor.set_cursor(_Pos(editing.line - 1, editing.column - 1))
+        view.editor.scroll_to_line(editing.line - 1, text_edit.TextEditor.Scroll.align_middle)
+        view.editor.set_focus()
+    elif focused and imgui.is_window_focused() and not imgui.is_any_item_active():
+        view.editor.set_focus()  # after a click on a tab or a button
+    if focused and not imgui.is_any_item_active():  # Enter in the search field finds
+        _indent(view)
+    with look.font(look.code), styled({imgui.Col_.child_bg: theme.colour(theme.palette.ground)}):
+        view.editor.render(_TEXT, ImVec2(0, 0))
+        _draw_behind(view, look)
+    if view.follow(imgui.get_time()):
+        view.waits = True
 
 
-def _take_keys(editing: Editing, notices: Notices) -> None:
-    if ctrl_held() and imgui.is_key_pressed(imgui.Key.s, False):
-        save(editing, notices)
+def _take_keys(editing: Editing, view: _View, files: OpenFiles) -> None:
+    if ctrl_held():
+        if imgui.is_key_pressed(imgui.Key.s, False):
+            files.save(editing)
+        for key, act in ((imgui.Key.z, view.undo), (imgui.Key.y, view.redo)):
+            if imgui.is_key_pressed(key):
+                imgui.internal.set_key_owner(key, _OWNER, imgui.internal.InputFlagsPrivate_.lock_this_frame)
+                (view.redo if imgui.get_io().key_shift else act)()
     imgui.get_io().want_text_input = True  # keys are this editor's, not the picture's
 
 
@@ -250,7 +351,7 @@ def _indent(view: _View) -> None:
     if editor.get_number_of_cursors() != 1:
         return
     selection = editor.get_main_cursor_selection()
-    first = text_edit.TextEditor.DocPos(selection.start.line, 0)
+    first = _Pos(selection.start.line, 0)
     typed = [chr(code) for code in io.input_queue_characters]
     if any(imgui.is_key_pressed(key) for key in _ENTER) and not (io.key_ctrl or io.key_shift or io.key_alt):
         for key in _ENTER:
@@ -258,13 +359,13 @@ def _indent(view: _View) -> None:
         io.input_queue_characters.clear()
         end = selection.end
         rest = editor.get_line_text(end.line)
-        rest = editor.get_section_text(end, text_edit.TextEditor.DocPos(end.line, len(rest)))
+        rest = editor.get_section_text(end, _Pos(end.line, len(rest)))
         blanks = len(rest) - len(rest.lstrip())
-        editor.select_region(selection.start, text_edit.TextEditor.DocPos(end.line, end.index + blanks))
+        editor.select_region(selection.start, _Pos(end.line, end.index + blanks))
         left, right = new_line(editor.get_section_text(first, selection.start), rest, view.step)
         _insert(view, left, right)
     elif len(typed) == 1 and selection.start == selection.end:
-        start = text_edit.TextEditor.DocPos(0, 0)
+        start = _Pos(0, 0)
         indent = closing_indent(editor.get_section_text(start, selection.start), typed[0])
         if indent is not None:
             io.input_queue_characters.clear()
@@ -279,21 +380,34 @@ def _insert(view: _View, left: str, right: str = "") -> None:
     view.editor.set_insert_spaces_on_tabs(view.step != "\t")
     if right:
         line = view.editor.get_main_cursor_position().line - 1
-        view.editor.set_cursor(text_edit.TextEditor.DocPos(line, len(left) - 1))
+        view.editor.set_cursor(_Pos(line, len(left) - 1))
 
 
-def _bar(editing: Editing, view: _View, notices: Notices, look: Theme) -> None:
-    note = "Ctrl+S; a save is checked at once, as from any editor"
+def _draw_bar(editing: Editing, view: _View, files: OpenFiles, look: Theme) -> None:
+    belongs_to = editing.belongs_to
+    if belongs_to:
+        with look.font(look.text, theme.SMALL):
+            imgui.align_text_to_frame_padding()
+            words = tr("of the library") if belongs_to == "library" else tr("a shipped sketch")
+            imgui.text_disabled(words)
+        imgui.same_line()
+        label = tr("Copy into this sketch") if belongs_to == "library" else tr("Edit a copy")
+        note = tr("A file of your own in its place, which can be changed")
+        if button(f"{label}###copy in", note, small=True):
+            files.copy_in(editing.text.path)
+        return
+    note = tr("Ctrl+S; what is typed is drawn at once, and kept here until it is saved")
     buttons(
-        ("Save", note, lambda: save(editing, notices), view.changed),
-        ("Undo", "", view.editor.undo, view.editor.can_undo()),
-        ("Redo", "", view.editor.redo, view.editor.can_redo()),
+        (f"{tr('Save')}###save code", note, lambda: files.save(editing), view.changed),
+        (f"{tr('Undo')}###undo code", "Ctrl+Z", view.undo, view.editor.can_undo()),
+        (f"{tr('Redo')}###redo code", "Ctrl+Y", view.redo, view.editor.can_redo()),
+        (f"{tr('Find')}###find code", "Ctrl+F", view.editor.open_find_replace_window, True),
         small=True,
     )
     imgui.same_line()
     cursor = view.editor.get_main_cursor_position()
     with look.font(look.text, theme.SMALL):
-        imgui.text_disabled(f"line {cursor.line + 1}, column {cursor.index + 1}   Ctrl+F finds")
+        imgui.text_disabled(tr("line {line}, column {column}", line=cursor.line + 1, column=cursor.index + 1))
 
 
 def _mark(editing: Editing, view: _View, problems: Problems) -> None:
@@ -303,9 +417,9 @@ def _mark(editing: Editing, view: _View, problems: Problems) -> None:
         for d in problems.all
         if d.file and d.line and d.file == without_part(d.file) and path_named(d.file) == editing.text.path
     )
-    if mine == view.marked:
+    if mine == view.marked[1] and view.marked[0] is problems.errors:
         return
-    view.marked = mine
+    view.marked = problems.errors, mine
     view.editor.clear_markers()
     for diagnostic in reversed(mine):
         rgb = theme.palette.alarm if diagnostic.severity == "error" else theme.palette.warm
@@ -315,79 +429,70 @@ def _mark(editing: Editing, view: _View, problems: Problems) -> None:
         )
 
 
+def _draw_behind(view: _View, look: Theme) -> None:
+    """Write mistakes behind their lines, cut where there is no room; the whole is their tooltip."""
+    if not view.marked[1]:
+        return
+    editor = view.editor
+    imgui.begin_child(_TEXT)  # the editor's own window: what is drawn scrolls and is clipped with it
+    corner, size, wide = imgui.get_window_pos(), imgui.get_window_size(), editor.get_glyph_width()
+    draw, right = imgui.get_window_draw_list(), corner.x + size.x - 16 * look.scale
+    first, last = editor.get_first_visible_row(), editor.get_last_visible_row()
+    done: set[int] = set()
+    for diagnostic in view.marked[1]:
+        line = diagnostic.line - 1
+        if line in done or line >= editor.get_line_count() or editor.is_line_hidden(line):
+            continue
+        done.add(line)
+        end = _Pos(line, len(editor.get_line_text(line)))
+        if not first <= editor.doc_pos2_vis_pos(end).row <= last:
+            continue
+        place = editor.doc_pos2_screen_pos(end)
+        x = place.x + 3 * wide
+        room = int((right - x) / wide)
+        text = " ".join(diagnostic.message.split())
+        rgb = theme.palette.alarm if diagnostic.severity == "error" else theme.palette.warm
+        if room > 5:
+            cut = text if len(text) <= room else f"{text[: room - 1]}…"
+            draw.add_text(ImVec2(x, place.y), theme.packed(rgb), cut)
+    imgui.end_child()
+
+
 # ── questions ────────────────────────────────────────────────────────────────
 
 
 def _question(title: str, text: str, answers: Sequence[tuple[str, str]]) -> str:
-    """Ask in a box over the window; return the answer that is clicked on, which closes it, else nothing."""
+    """Ask in a box over the window; return the answer that is clicked on, which closes it, else nothing.
+
+    ``answers``: what each is called here, and what it reads on the screen.
+    """
     if not imgui.is_popup_open(title):
         imgui.open_popup(title)
     chosen = ""
-    if imgui.begin_popup_modal(title, None, _BOX)[0]:
-        imgui.text_unformatted(text)
-        for number, (answer, note) in enumerate(answers):
-            if number:
-                imgui.same_line()
-            if button(answer, note):
-                chosen = answer
-        if chosen:
-            imgui.close_current_popup()
-        imgui.end_popup()
+    with styled({imgui.Col_.modal_window_dim_bg: theme.colour((0.0, 0.0, 0.0), 0.45)}):
+        if imgui.begin_popup_modal(title, None, _BOX)[0]:
+            imgui.text_unformatted(text)
+            for number, (answer, words) in enumerate(answers):
+                if number:
+                    imgui.same_line()
+                if button(f"{words}###{answer}"):
+                    chosen = answer
+            if chosen:
+                imgui.close_current_popup()
+            imgui.end_popup()
     return chosen
 
 
-def _ask_to_leave(files: OpenFiles, quit_window: Callable[[], None]) -> None:
-    """Ask whether to save unsaved files before the window closes."""
-    answers = [("Save and quit", ""), ("Quit", ""), ("Stay", "")]
-    answer = _question(_LEAVING, f"Not saved: {', '.join(unsaved(files.editing))}", answers)
-    if not answer:
-        return
-    files.leaving = False
-    if answer == "Quit":
-        files.editing.clear()
-    open_ones = [e for e in files.editing if e.text.needs_saving and _view_of(e).changed]
-    if answer == "Quit" or (answer != "Stay" and all([save(e, files.notices) for e in open_ones])):
-        quit_window()
-
-
-def _ask(editing: Editing, view: _View, notices: Notices) -> bool:
-    """Ask about a clash, or about closing with unsaved changes; return False to close the file."""
-    if view.clash:
-        answer = _question(_CLASH, view.clash, _CLASH_ANSWERS)
-        try:
-            if answer == "Take theirs":
-                _reload(editing, view)
-            elif answer == "Save mine":
-                _save_over(editing, view, notices)
-            elif answer:
-                view.clash = ""
-        except PlaygroundError as error:
-            notices.say(str(error))
-    if view.closing:
-        answers = [("Save and close", ""), ("Close", ""), ("Stay", "")]
-        answer = _question(_CLOSING, f"{editing.text.path.name} has changes that are not saved.", answers)
-        view.closing = not answer
-        return not (answer == "Close" or (answer == "Save and close" and save(editing, notices)))
-    return True
-
-
-def _save_over(editing: Editing, view: _View, notices: Notices) -> None:
-    """Save over what others saved; that becomes the step of the text's history before the last."""
-    mine, view.clash = view.written(), ""
-    with suppress(PlaygroundError):  # the file may be gone
-        _replace(view, OpenText.read(editing.text.path).base)
-        _replace(view, mine)
-    save(editing, notices, over=True)
-
-
-def _reload(editing: Editing, view: _View) -> None:
-    text = editing.text.reload()
-    view.clash = ""
-    _replace(view, text)
-    view.saved_at = view.editor.get_undo_index()
-
-
-def _replace(view: _View, text: str) -> None:
-    """Replace the text as one step that can be undone."""
-    view.editor.select_all()
-    _insert(view, text)
+def _ask_to_close(editing: Editing, view: _View, files: OpenFiles) -> None:
+    """Ask what becomes of changes that are not saved."""
+    name = editing.text.path.name
+    answers = (
+        ("save and close", tr("Save and close")),
+        ("close", tr("Close without saving")),
+        ("stay", tr("Stay")),
+    )
+    title = f"{tr('Close without saving?')}###close code"
+    answer = _question(title, tr("{file} has changes that are not saved.", file=name), answers)
+    view.closing = not answer
+    if answer == "close" or (answer == "save and close" and files.save(editing)):
+        files.close(editing)

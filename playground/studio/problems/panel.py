@@ -225,12 +225,12 @@ class ErrorsList:
             if imgui.text_link(f"{self._short(diagnostic.location)}##place"):
                 self.files.open_problem(diagnostic)
         if imgui.is_item_hovered():
-            imgui.set_tooltip(f"{diagnostic.location}\nOpens in {editor_name() or 'a window here'}")
+            imgui.set_tooltip(f"{diagnostic.location}\nOpens in {editor_name() or 'the code pane'}")
         with look.font(look.text, theme.SMALL):
             imgui.same_line(0, 16 * look.scale)
             if imgui.text_link("edit here##here"):
                 self.files.open_problem(diagnostic, here=True)
-            imgui.set_item_tooltip("Opens the file in a window of its own, here")
+            imgui.set_item_tooltip("Opens the file in the code pane")
             for name in passes_of(self.session.sketch, diagnostic)[:3]:
                 imgui.same_line(0, 12 * look.scale)
                 if imgui.text_link(f"pass {name}##pass"):

@@ -211,11 +211,14 @@ def _hash(path: Path) -> bytes:
 
 
 class Follower:
-    """A session, and the watcher that follows its files."""
+    """A session, and the watcher that follows its files; ``tell`` hears of those that others saved."""
 
-    def __init__(self, session: Session, watcher: Watcher) -> None:
+    def __init__(
+        self, session: Session, watcher: Watcher, tell: Callable[[set[Path]], None] = lambda changed: None
+    ) -> None:
         self.session = session
         self.watcher = watcher
+        self.tell = tell
         self._followed: tuple[object, ...] = ()  # what decided which files are watched
 
     def take(self, own: Iterable[Path] = ()) -> bool:
@@ -224,6 +227,8 @@ class Follower:
         ``own`` are files that this process writes itself and shows already.
         """
         changed = self.watcher.take() - set(own)
+        if changed:
+            self.tell(changed)
         changed_files = changed & self.session.drafts.files if changed else changed
         if not changed or not (self.session.error or changed_files):
             return False

@@ -1,0 +1,179 @@
+"""The code pane: what is typed is drawn without being saved, kept until it is, and there again."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from imgui_bundle import imgui
+
+from playground.engine.engine import Engine
+from playground.studio.code.kept import KeptTexts
+from playground.studio.code.open_files import Editing, is_changed, unsaved
+
+from ..sketch_texts import map_of_height
+from .panel_desk import Bare
+
+TERRAIN = """// terrain.glsl -- hills
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(0, 1) How high the hills are
+float kernel(ivec2 texel) {
+    return level;
+}
+"""
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": "format = 1\nsize = 17\n" + map_of_height()}
+WAITS = 20  # frames after which what is typed is drawn
+
+
+class Pane(Bare):
+    """The code pane on a sketch, whose state folder is the test's own."""
+
+    def __init__(self, engine: Engine, folder: Path) -> None:
+        super().__init__(engine, folder / "sketch.toml", kept=KeptTexts(folder / "state"))
+        self.watch(imgui, "begin_tab_item")
+        self.run_frames(4)
+
+    def draw(self) -> None:
+        self.bench.follow_files()
+        self.bench.problems.take(self.session.error, (), self.session.sketch)
+        self.draw_pane()
+        super().draw()
+
+    def height(self) -> float:
+        """Return the height of the terrain that is drawn, the same at each texel."""
+        values = self.session.read_values("height:height")
+        assert values is not None
+        return float(values[8, 8])
+
+    def tab(self, name: str) -> Editing:
+        return next(e for e in self.bench.files.editing if e.text.path.name == name)
+
+    def place(self, line: int, column: int) -> None:
+        """Give the kernel's text the keys, at a place from 1."""
+        self.bench.files.open(self.session.path.parent / "terrain.glsl", line, column, here=True)
+        self.run_frames(3)
+
+
+@pytest.fixture
+def open_pane(folder: Path, any_engine: Engine) -> Iterator[Callable[[], Pane]]:
+    """Give what opens a pane on the sketch; the one before is closed."""
+    opened: list[Pane] = []
+
+    def open_pane() -> Pane:
+        while opened:
+            opened.pop().close()
+        opened.append(Pane(any_engine, folder))
+        return opened[0]
+
+    yield open_pane
+    while opened:
+        opened.pop().close()
+
+
+@pytest.fixture
+def pane(open_pane: Callable[[], Pane]) -> Pane:
+    return open_pane()
+
+
+def test_the_sketch_and_its_kernels_have_tabs(pane: Pane) -> None:
+    assert [e.text.path.name for e in pane.bench.files.editing] == ["sketch.toml", "terrain.glsl"]
+    assert pane.bench.files.current is pane.tab("terrain.glsl"), "the code is seen first"
+    assert not unsaved(pane.bench.files.editing)
+
+
+def test_what_is_typed_is_drawn_and_not_saved(pane: Pane, folder: Path) -> None:
+    file = folder / "terrain.glsl"
+    pane.place(5, 17)
+    pane.type(" * 0.5")
+    assert pane.height() == 0.5, "not before the keys rest"
+    pane.run_frames(WAITS)
+    assert pane.height() == 0.25
+    assert file.read_text(encoding="utf-8") == TERRAIN
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    assert file.read_text(encoding="utf-8") == TERRAIN.replace("level;", "level * 0.5;")
+    assert pane.height() == 0.25 and not pane.session.drafts.unsaved and not unsaved(pane.bench.files.editing)
+
+
+def test_a_mistake_stands_at_its_line_and_the_picture_stays(pane: Pane) -> None:
+    pane.place(5, 17)
+    pane.type(" * leval")
+    pane.run_frames(WAITS)
+    assert pane.height() == 0.5
+    (wrong,) = pane.bench.problems.errors
+    assert wrong.line == 5 and "leval" in wrong.message
+    view = pane.tab("terrain.glsl").view
+    assert view.editor.has_markers()
+    for _ in "val":
+        pane.key(imgui.Key.backspace)
+    pane.type("vel")
+    pane.run_frames(WAITS)
+    assert not pane.bench.problems.all and pane.height() == 0.25 and not view.editor.has_markers()
+
+
+def test_undo_goes_by_words_and_pauses(pane: Pane) -> None:
+    pane.place(5, 17)
+    view = pane.tab("terrain.glsl").view
+    line = "    return level;"
+    pane.type(" + one two")
+    pane.run_frames(80)
+    pane.type("three")
+    seen = []
+    for _ in range(5):
+        pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
+        seen.append(view.editor.get_line_text(4))
+    assert seen[:3] == [
+        "    return level + one two;",
+        "    return level + one ;",
+        "    return level + ;",
+    ]
+    assert seen[-1] == line
+    for _ in range(6):
+        pane.key(imgui.Key.mod_ctrl, imgui.Key.y)
+    assert view.editor.get_line_text(4) == "    return level + one twothree;"
+
+
+def test_what_is_typed_is_there_again(pane: Pane, folder: Path, open_pane: Callable[[], Pane]) -> None:
+    pane.place(5, 17)
+    pane.type(" * 0.5")
+    pane.run_frames(WAITS)
+    again = open_pane()
+    again.run_frames(WAITS)
+    typed = TERRAIN.replace("level;", "level * 0.5;")
+    assert again.height() == 0.25 and again.tab("terrain.glsl").view.written() == typed
+    assert unsaved(again.bench.files.editing) == ["terrain.glsl"]
+    again.place(1, 1)
+    again.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    again.run_frames(WAITS)
+    assert again.tab("terrain.glsl").view.written() == TERRAIN and again.height() == 0.5
+    assert KeptTexts(folder / "state").of(folder / "terrain.glsl") is None
+
+
+def test_what_was_typed_before_a_later_save_is_one_undo_away(
+    folder: Path, open_pane: Callable[[], Pane]
+) -> None:
+    file = folder / "terrain.glsl"
+    KeptTexts(folder / "state").keep(file, "// mine\n", TERRAIN)
+    file.write_text(TERRAIN.replace("0.5", "0.75"), encoding="utf-8")
+    os.utime(file, (time.time() + 60, time.time() + 60))
+    pane = open_pane()
+    pane.run_frames(WAITS)
+    tab = pane.tab("terrain.glsl")
+    assert pane.height() == 0.75 and not is_changed(tab)
+    pane.place(1, 1)
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    assert tab.view.written() == "// mine\n" and is_changed(tab)
+
+
+def test_what_cannot_be_read_of_what_was_kept_is_left_out(folder: Path) -> None:
+    kept, file = KeptTexts(folder / "state"), folder / "terrain.glsl"
+    kept.keep(file, "mine", TERRAIN)
+    assert kept.of(file).text == "mine"  # type: ignore[union-attr]
+    (stored,) = (folder / "state").iterdir()
+    for text in ("{", "[]", '{"format": 2}', '{"format": 1, "path": "elsewhere", "text": "", "over": ""}'):
+        stored.write_text(text, encoding="utf-8")
+        assert kept.of(file) is None
+    kept.forget(file)
+    assert kept.of(file) is None and not list((folder / "state").iterdir())
