@@ -97,7 +97,7 @@ class Workbench:
     def follow_files(self) -> None:
         """Have the tabs of the code pane be those of the sketch that is shown."""
         drafts = self.session.drafts
-        if not drafts.opening:
+        if not drafts.opening and (drafts.shown is not None or drafts.error is not None):
             self.files.follow(drafts.path, drafts.shown.file if drafts.shown is not None else None)
         self.panes.has_code = bool(self.files.editing)
 

@@ -111,6 +111,7 @@ _K = imgui.Key
 _INSPECT = "every pass's number at a pixel; Shift: of those inside, too"
 _TRACE = "every value of a texel beside the code; a click pins it, Shift: compares"
 _TOOLS = f"the brush's tool: {', '.join(TOOLS)}"
+_EDIT = "edit the file of the current error here, or in your own editor"
 _HELP = "show or hide these keys"
 _VISITS = "the sketch that was open before, and forward again"
 _BRUSH = "the brush: narrower, wider, weaker, stronger, harder, softer"
@@ -164,7 +165,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.f6, "Ctrl+F6", "go back to the version that is looked at", lambda b: _go_back(b), ctrl=True),
     Key(_K.v, "V", "the versions, or no longer", lambda b: _toggle_versions(b)),
     Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
-    Key(_K.e, "E", "edit the file of the current error", lambda b: b.files.open_current(b.problems)),
+    Key(_K.e, "E, Shift+E", _EDIT, lambda b: b.files.open_current(b.problems, here=not _shift_held())),
     Key(_K.e, "Ctrl+E", "the code pane, or no longer", lambda b: _toggle_code(b), ctrl=True, brief="code"),
     Key(_K.z, "Ctrl+Z", "undo", lambda b: b.undo.undo(), ctrl=True),
     Key(_K.z, "Ctrl+Shift+Z", "redo", lambda b: b.undo.redo(), ctrl=True, shift=True),

@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from imgui_bundle import imgui
@@ -50,6 +51,9 @@ class Pane(Bare):
 
     def tab(self, name: str) -> Editing:
         return next(e for e in self.bench.files.editing if e.text.path.name == name)
+
+    def editor(self, name: str = "terrain.glsl") -> Any:
+        return self.tab(name).view.editor  # type: ignore[union-attr]
 
     def place(self, line: int, column: int) -> None:
         """Give the kernel's text the keys, at a place from 1."""
@@ -104,18 +108,16 @@ def test_a_mistake_stands_at_its_line_and_the_picture_stays(pane: Pane) -> None:
     assert pane.height() == 0.5
     (wrong,) = pane.bench.problems.errors
     assert wrong.line == 5 and "leval" in wrong.message
-    view = pane.tab("terrain.glsl").view
-    assert view.editor.has_markers()
+    assert pane.editor().has_markers()
     for _ in "val":
         pane.key(imgui.Key.backspace)
     pane.type("vel")
     pane.run_frames(WAITS)
-    assert not pane.bench.problems.all and pane.height() == 0.25 and not view.editor.has_markers()
+    assert not pane.bench.problems.all and pane.height() == 0.25 and not pane.editor().has_markers()
 
 
 def test_undo_goes_by_words_and_pauses(pane: Pane) -> None:
     pane.place(5, 17)
-    view = pane.tab("terrain.glsl").view
     line = "    return level;"
     pane.type(" + one two")
     pane.run_frames(80)
@@ -123,16 +125,16 @@ def test_undo_goes_by_words_and_pauses(pane: Pane) -> None:
     seen = []
     for _ in range(5):
         pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
-        seen.append(view.editor.get_line_text(4))
+        seen.append(pane.editor().get_line_text(4))
     assert seen[:3] == [
         "    return level + one two;",
-        "    return level + one ;",
-        "    return level + ;",
+        "    return level + one;",
+        "    return level +;",
     ]
     assert seen[-1] == line
     for _ in range(6):
         pane.key(imgui.Key.mod_ctrl, imgui.Key.y)
-    assert view.editor.get_line_text(4) == "    return level + one twothree;"
+    assert pane.editor().get_line_text(4) == "    return level + one twothree;"
 
 
 def test_what_is_typed_is_there_again(pane: Pane, folder: Path, open_pane: Callable[[], Pane]) -> None:
@@ -142,12 +144,12 @@ def test_what_is_typed_is_there_again(pane: Pane, folder: Path, open_pane: Calla
     again = open_pane()
     again.run_frames(WAITS)
     typed = TERRAIN.replace("level;", "level * 0.5;")
-    assert again.height() == 0.25 and again.tab("terrain.glsl").view.written() == typed
+    assert again.height() == 0.25 and again.editor().get_text() == typed
     assert unsaved(again.bench.files.editing) == ["terrain.glsl"]
     again.place(1, 1)
     again.key(imgui.Key.mod_ctrl, imgui.Key.z)
     again.run_frames(WAITS)
-    assert again.tab("terrain.glsl").view.written() == TERRAIN and again.height() == 0.5
+    assert again.editor().get_text() == TERRAIN and again.height() == 0.5
     assert KeptTexts(folder / "state").of(folder / "terrain.glsl") is None
 
 
@@ -164,7 +166,7 @@ def test_what_was_typed_before_a_later_save_is_one_undo_away(
     assert pane.height() == 0.75 and not is_changed(tab)
     pane.place(1, 1)
     pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
-    assert tab.view.written() == "// mine\n" and is_changed(tab)
+    assert pane.editor().get_text() == "// mine\n" and is_changed(tab)
 
 
 def test_what_cannot_be_read_of_what_was_kept_is_left_out(folder: Path) -> None:

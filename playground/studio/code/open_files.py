@@ -400,10 +400,10 @@ class OpenFiles:
         position = (diagnostic.line, diagnostic.column) if whole else (0, 0)  # a line of a string has none
         self.open(path_named(diagnostic.file), *position, here=here)
 
-    def open_current(self, problems: Problems) -> None:
-        """Open the file of the current mistake in the code pane, at first of the first."""
+    def open_current(self, problems: Problems, *, here: bool) -> None:
+        """Open the file of the current mistake, at first of the first; ``here``: in the code pane."""
         if problems.all:
-            self.open_problem(problems.all[max(problems.at, 0)], here=True)
+            self.open_problem(problems.all[max(problems.at, 0)], here=here)
         else:
             self.notices.say("no errors, so nothing to edit")
 

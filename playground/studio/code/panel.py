@@ -172,10 +172,10 @@ class _View:
         self.index = index
 
     def _begins_word(self) -> bool:
-        """Return whether the letter before the cursor is the first of a word, or begins a line."""
+        """Return whether what was typed begins a line or a word, or is the blank before one."""
         at = self.editor.get_main_cursor_position()
         before = self.editor.get_line_text(at.line)[: at.index]
-        return not before.strip() or re.search(r"(?:^|\W)\w$", before) is not None
+        return not before.strip() or re.search(r"\S\s$|[^\w\s]\w$", before) is not None
 
 
 def _view_of(editing: Editing) -> _View:
