@@ -21,6 +21,8 @@ from playground.engine.sandbox import Request, Sandbox, SandboxReport
 from playground.errors import ContextError, Diagnostic, OpenGLFault, PlaygroundError
 from playground.paths import GLSL, SKETCHES, current_folder, without_part
 from playground.shader.source import normalised, read_text
+from playground.sketch import shader_names
+from playground.sketch.shader_names import Shader
 from playground.verify.check import check_file
 
 Units = Callable[[str], int]
@@ -163,6 +165,17 @@ class Documents:
             name += ".toml" if "toml" in language else ".glsl"
         folder = path.parent if path.is_absolute() and path.parent.is_dir() else None
         return (folder or next(iter(self.folders), Path.cwd())).resolve() / name
+
+
+def shader_of(document: Document, documents: Documents) -> Shader:
+    """Return what is known of an open shader."""
+    return shader_at(document.path, document.text, document.root, documents)
+
+
+def shader_at(path: Path, text: str, root: Path, documents: Documents) -> Shader:
+    """Return what is known of a shader's file, with the texts that are open in place of the files'."""
+    with documents.reading():
+        return shader_names.shader_at(path, text, root)
 
 
 # ── diagnostics ────────────────────────────────────────────────────────────────

@@ -11,20 +11,20 @@ from lsprotocol import types
 
 from playground.errors import DataError, PlaygroundError
 from playground.lsp import describe
-from playground.lsp.documents import Document, Documents, Text
+from playground.lsp.documents import Document, Documents, Text, shader_of
 from playground.lsp.highlight import influence_text
-from playground.lsp.names import include_at, is_code, syntax_of, word_at
-from playground.lsp.shader import library_declared, shader_of
 from playground.lsp.sketch_text import SketchText
 from playground.paths import GLSL, shown
 from playground.shader.colours import parse_hex, to_hex
 from playground.shader.header import title_of
+from playground.shader.names import include_at, is_code, syntax_of, word_at
 from playground.shader.outline import outline
 from playground.shader.reserved_names import DRIVER_BOUND, RESERVED
 from playground.shader.source import find_include, read_source, read_text
 from playground.shader.widgets import WIDGETS
 from playground.sketch import toml_table
 from playground.sketch.model import Parameter
+from playground.sketch.shader_names import library_declared
 from playground.sketch.toml_text import KeyPath, Pair
 from playground.sketch.wiring import inner
 

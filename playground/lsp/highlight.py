@@ -9,10 +9,9 @@ from pathlib import Path
 from lsprotocol import types
 
 from playground.errors import Diagnostic
-from playground.lsp.documents import Document, Documents
-from playground.lsp.names import Syntax, syntax_of, word_at, words
-from playground.lsp.shader import Shader, shader_of
+from playground.lsp.documents import Document, Documents, shader_of
 from playground.paths import shown
+from playground.shader.names import Syntax, syntax_of, word_at, words
 from playground.shader.reserved_names import GLSL_WORDS, MATCHES, TOWARDS, WIRED
 from playground.shader.syntax.influence import Influence, unused
 from playground.shader.syntax.nodes import (
@@ -27,6 +26,7 @@ from playground.shader.syntax.nodes import (
     walk,
 )
 from playground.shader.syntax.symbols import Symbol
+from playground.sketch.shader_names import Shader
 
 LEGEND = types.SemanticTokensLegend(
     ["function", "variable", "parameter", "property", "struct", "macro"],

@@ -21,12 +21,11 @@ from lsprotocol import types
 
 from playground.allowed_files import FAST, SHADERS, is_file, names_below, reading_unsaved
 from playground.errors import PlaygroundError
-from playground.lsp.documents import Document, Documents, root_for
-from playground.lsp.names import Meaning, Syntax, Unit, is_code, syntax_of, word_at, words
-from playground.lsp.shader import Shader, shader_at, shader_of
+from playground.lsp.documents import Document, Documents, root_for, shader_at, shader_of
 from playground.lsp.sketch_text import SketchText
 from playground.paths import shown
 from playground.shader.header import is_given, parse_kernel
+from playground.shader.names import Meaning, Syntax, Unit, is_code, syntax_of, word_at, words
 from playground.shader.reserved_names import GLSL_WORDS, MATCHES, PREFIX, TOWARDS, WIRED
 from playground.shader.source import read_source, read_text
 from playground.shader.syntax.influence import ENTRY
@@ -34,6 +33,7 @@ from playground.shader.syntax.nodes import For, Function, Node, While
 from playground.sketch.assign import find_targets
 from playground.sketch.load import load_with
 from playground.sketch.model import Graph, Parameter, Technique
+from playground.sketch.shader_names import Shader
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_text import TomlPlaces
 

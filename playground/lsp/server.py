@@ -26,10 +26,10 @@ from playground.errors import Diagnostic, PlaygroundError
 from playground.lsp import explain, highlight
 from playground.lsp.complete import complete_shader, complete_sketch
 from playground.lsp.documents import Checker, Document, Documents, Text
-from playground.lsp.names import word_at
 from playground.lsp.rename import Refused, prepare, references, rename
-from playground.lsp.shader import library_declared
 from playground.lsp.traced import Tracer
+from playground.shader.names import word_at
+from playground.sketch.shader_names import library_declared
 
 T = TypeVar("T")
 

@@ -25,9 +25,9 @@ from playground.engine.trace.model import Event, Trace
 from playground.errors import ParameterError, PlaygroundError, ShaderError
 from playground.lsp import describe
 from playground.lsp.documents import Document, Documents
-from playground.lsp.names import word_at
 from playground.lsp.trace_worker import TraceRequest
 from playground.paths import shown
+from playground.shader.names import word_at
 from playground.shader.syntax.tokens import tokenize
 
 REST_SECONDS = 0.4

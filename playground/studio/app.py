@@ -34,8 +34,8 @@ from playground.studio import theme
 from playground.studio.addition import Addition, FullScreen
 from playground.studio.bench import Host, Workbench
 from playground.studio.code.editors import Opener
-from playground.studio.code.kept import KeptTexts
 from playground.studio.code.panel import draw_code, draw_questions
+from playground.studio.code.unsaved_texts import KeptTexts
 from playground.studio.compare.panel import below_bar, drag_line, paint_both
 from playground.studio.cost.panel import draw_readout
 from playground.studio.cost.readout import Readout

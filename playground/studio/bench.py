@@ -12,8 +12,8 @@ from playground.paths import GLSL, SKETCHES
 from playground.studio.actions import Actions
 from playground.studio.addition import Addition
 from playground.studio.code.editors import Opener
-from playground.studio.code.kept import KeptTexts
 from playground.studio.code.open_files import OpenFiles
+from playground.studio.code.unsaved_texts import KeptTexts
 from playground.studio.edits.autosave import Autosave
 from playground.studio.edits.undo import Undo
 from playground.studio.graph.edits import PassEdits

@@ -166,7 +166,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.v, "V", "the versions, or no longer", lambda b: _toggle_versions(b)),
     Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
     Key(_K.e, "E, Shift+E", _EDIT, lambda b: b.files.open_current(b.problems, here=not _shift_held())),
-    Key(_K.e, "Ctrl+E", "the code pane, or no longer", lambda b: _toggle_code(b), ctrl=True, brief="code"),
+    Key(_K.e, "Ctrl+E", "the code pane, or no longer", lambda b: _toggle_code(b), ctrl=True),
     Key(_K.z, "Ctrl+Z", "undo", lambda b: b.undo.undo(), ctrl=True),
     Key(_K.z, "Ctrl+Shift+Z", "redo", lambda b: b.undo.redo(), ctrl=True, shift=True),
     Key(_K.y, "Ctrl+Y", "redo", lambda b: b.undo.redo(), ctrl=True),

@@ -10,8 +10,8 @@ import pytest
 
 from playground.engine.programs import compile_wrapped
 from playground.errors import PlaygroundError
-from playground.lsp.names import Syntax, syntax_of, words
 from playground.paths import GLSL
+from playground.shader.names import Syntax, syntax_of, words
 from playground.shader.syntax.symbols import Symbol
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import CpuSource

@@ -11,9 +11,8 @@ import pytest
 import playground
 from playground.engine.trace.live_texel import LiveTexel, live_file, write_live_texel
 from playground.engine.trace.model import Event
-from playground.lsp.documents import Documents, root_for
+from playground.lsp.documents import Documents, root_for, shader_at
 from playground.lsp.highlight import influence
-from playground.lsp.shader import shader_at
 from playground.paths import NAME, SKETCHES
 from playground.shader.outline import outline
 from playground.sketch.assign import values_of

@@ -11,8 +11,8 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.engine.engine import Engine
 from playground.studio.bench import Workbench
-from playground.studio.code.kept import KeptTexts
 from playground.studio.code.panel import draw_code, draw_questions
+from playground.studio.code.unsaved_texts import KeptTexts
 from playground.studio.drops import Drops
 from playground.studio.interface import Preferences, WindowControls
 from playground.studio.keys import act_on_keys, draw_keymap

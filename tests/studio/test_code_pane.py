@@ -12,8 +12,8 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.studio.code.kept import KeptTexts
 from playground.studio.code.open_files import Editing, is_changed, unsaved
+from playground.studio.code.unsaved_texts import KeptTexts
 
 from ..sketch_texts import map_of_height
 from .panel_desk import Bare

@@ -988,7 +988,7 @@ def test_what_is_typed_is_drawn_as_if_it_were_saved(harness: Harness) -> None:
     assert not np.array_equal(drawn, before)
 
 
-def test_a_mistake_that_is_typed_keeps_the_picture_and_names_its_line(harness: Harness) -> None:
+def test_a_typed_mistake_keeps_the_picture_and_names_its_line(harness: Harness) -> None:
     file, shown = harness.folder / "one/sketch.toml", harness.session.shown
     harness.drafts.take_typed(file, file.read_text(encoding="utf-8").replace("size = 9", "size = nine"))
     harness.frame()

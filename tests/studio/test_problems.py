@@ -293,7 +293,7 @@ def test_without_an_editor_it_opens_here_is_edited_and_saved(
     assert unsaved(harness.bench.files.editing), "what was saved is no longer what is seen"
 
 
-def test_what_others_saved_while_it_was_typed_is_one_undo_away(harness: Harness, folder: Path) -> None:
+def test_a_later_save_here_keeps_theirs_one_undo_away(harness: Harness, folder: Path) -> None:
     """The newer is shown, and saved: here what is typed."""
     wave = folder / "wave.glsl"
     harness.bench.files.open(wave, 4, 1, here=True)
@@ -308,9 +308,7 @@ def test_what_others_saved_while_it_was_typed_is_one_undo_away(harness: Harness,
     assert typed_in(harness.bench.files.editing[0]) == theirs, "nothing is lost"
 
 
-def test_what_others_save_is_shown_and_what_was_typed_is_one_undo_away(
-    harness: Harness, folder: Path
-) -> None:
+def test_what_others_save_is_shown_and_undo_brings_mine_back(harness: Harness, folder: Path) -> None:
     """The newer is shown: here what others saved."""
     wave, files = folder / "wave.glsl", harness.bench.files
     files.open(wave, 4, 1, here=True)

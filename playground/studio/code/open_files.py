@@ -24,7 +24,7 @@ from playground.paths import GLSL, SKETCHES, shown, without_part
 from playground.shader.libraries import libraries, library_around
 from playground.sketch.model import Sketch
 from playground.studio.code.editors import Opener, find_editor
-from playground.studio.code.kept import KeptTexts, hash_of_text
+from playground.studio.code.unsaved_texts import KeptTexts, hash_of_text
 from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.problems.problems import Problems

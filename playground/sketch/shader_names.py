@@ -13,11 +13,10 @@ from functools import cache
 from pathlib import Path
 
 from playground.errors import PlaygroundError
-from playground.lsp.documents import Document, Documents
-from playground.lsp.names import Unit, includes, lexed, syntax_of, unit_of
 from playground.paths import GLSL
 from playground.shader.driver_log import library
 from playground.shader.header import parse_kernel, read_uniforms
+from playground.shader.names import Unit, includes, lexed, syntax_of, unit_of
 from playground.shader.outline import Declared, outline
 from playground.shader.reserved_names import GIVEN, MATCHES, SKIPS, TOWARDS, WIRED
 from playground.shader.source import SourceText, find_include, read_source, read_text
@@ -137,21 +136,18 @@ class Shader:
         return ""
 
 
-def shader_of(document: Document, documents: Documents) -> Shader:
-    """Return what is known of an open shader."""
-    return shader_at(document.path, document.text, document.root, documents)
+def shader_at(path: Path, text: str, root: Path) -> Shader:
+    """Return what is known of a shader's file, whose text is read in place of the file (``reading_unsaved``).
 
-
-def shader_at(path: Path, text: str, root: Path, documents: Documents) -> Shader:
-    """Return what is known of a shader's file, with the texts that are open in place of the files'."""
-    with documents.reading():
-        try:
-            source = read_source(path, (root,))
-        except PlaygroundError:
-            return Shader(path, text, root, *_reached(path, text, root))
-        files = tuple((Path(file), read_text(Path(file))) for file in source.files)
-        targets = tuple((Path(file), name, Path(target)) for file, name, target in source.includes)
-        kernel, parameters, inputs = _header(source)
+    ``root`` is the folder that it may include from, besides ``glsl/``.
+    """
+    try:
+        source = read_source(path, (root,))
+    except PlaygroundError:
+        return Shader(path, text, root, *_reached(path, text, root))
+    files = tuple((Path(file), read_text(Path(file))) for file in source.files)
+    targets = tuple((Path(file), name, Path(target)) for file, name, target in source.includes)
+    kernel, parameters, inputs = _header(source)
     return Shader(path, text, root, files, targets, parameters, inputs, kernel)
 
 
