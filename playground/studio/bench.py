@@ -12,7 +12,7 @@ from playground.paths import GLSL, SKETCHES
 from playground.studio.actions import Actions
 from playground.studio.addition import Addition
 from playground.studio.code.editors import Opener
-from playground.studio.code.open_files import OpenFiles
+from playground.studio.code.open_files import OpenFiles, is_changed
 from playground.studio.code.unsaved_texts import KeptTexts
 from playground.studio.edits.autosave import Autosave
 from playground.studio.edits.undo import Undo
@@ -63,6 +63,7 @@ class Workbench:
         self.actions = Actions(session, self.notices, self.undo, self.file, folder)
         self.keyframes = KeyframeEdits(session, self.notices, self.undo, self.file)
         self.passes = PassEdits(session, self.notices, self.undo, self.file)
+        self.file.save_typed = self._save_typed_sketch
         self.interface = Interface(preferences=preferences or Preferences())
         self.start = StartPage(self.actions, more=self._cards)
         self.panes = Panes(self.interface.preferences)
@@ -100,6 +101,12 @@ class Workbench:
         if not drafts.opening and (drafts.shown is not None or drafts.error is not None):
             self.files.follow(drafts.path, drafts.shown.file if drafts.shown is not None else None)
         self.panes.has_code = bool(self.files.editing)
+
+    def _save_typed_sketch(self) -> None:
+        """Save what is typed in the sketch's own file: values, keyframes and passes are written into that."""
+        editing = self.files.at(self.session.path)
+        if editing is not None and is_changed(editing):
+            self.files.save(editing)
 
     def _copy_in(self, path: Path) -> None:
         """Make a file that is not to be changed the sketch's own, or copy the sketch that it belongs to."""

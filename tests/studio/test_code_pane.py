@@ -12,7 +12,10 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
+from playground.paths import GLSL
+from playground.sketch.shader_names import library_declared
 from playground.studio.code.open_files import Editing, is_changed, unsaved
+from playground.studio.code.panel import typing
 from playground.studio.code.unsaved_texts import KeptTexts
 
 from ..sketch_texts import map_of_height
@@ -179,3 +182,88 @@ def test_what_cannot_be_read_of_what_was_kept_is_left_out(folder: Path) -> None:
         assert kept.of(file) is None
     kept.forget(file)
     assert kept.of(file) is None and not list((folder / "state").iterdir())
+
+
+# ── completion ────────────────────────────────────────────────────────────────
+
+
+def test_names_are_completed(pane: Pane) -> None:
+    """Against what the letters begin: a local, a uniform, then the library with the include it needs."""
+    pane.place(5, 17)
+    pane.type(" * tex")
+    pane.key(imgui.Key.tab)
+    pane.type(".x + le")
+    pane.key(imgui.Key.enter)
+    assert pane.editor().get_line_text(4) == "    return level * texel.x + level;"
+    pane.type(" + le")
+    pane.key(imgui.Key.escape)
+    assert typing(pane.bench.files), "Esc closes the list alone"
+    pane.key(imgui.Key.enter)
+    assert pane.editor().get_line_text(5) == "    ;", "after Esc a new line is a new line"
+
+
+def test_what_is_completed_is_one_undo_and_is_drawn(pane: Pane) -> None:
+    pane.place(5, 17)
+    pane.type(" * le")
+    pane.key(imgui.Key.tab)
+    pane.run_frames(WAITS)
+    assert pane.height() == 0.25
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    assert pane.editor().get_line_text(4) == "    return level * le;"
+
+
+def test_a_function_of_the_library_brings_its_include(pane: Pane) -> None:
+    name, places = next(item for item in library_declared().items() if len(item[0]) > 8)
+    pane.place(5, 17)
+    pane.type(f" + {name[:-1]}")
+    pane.key(imgui.Key.tab)
+    text = pane.editor().get_text()
+    assert text.index(f'#include "{places[0][0]}"') < text.index(f"level + {name};")
+
+
+def test_nothing_is_completed_in_a_comment(pane: Pane) -> None:
+    pane.place(1, 1)
+    pane.type("// le")
+    pane.key(imgui.Key.tab)
+    assert "level" not in pane.editor().get_line_text(0)
+
+
+# ── files that are not the sketch's own, and what else writes ─────────────────
+
+
+def test_values_are_saved_with_what_is_typed_in_the_sketch(pane: Pane, folder: Path) -> None:
+    sketch = folder / "sketch.toml"
+    pane.bench.files.open(sketch, 2, 1, here=True)
+    pane.run_frames(3)
+    pane.type("# mine")
+    pane.key(imgui.Key.enter)
+    pane.run_frames(WAITS)
+    pane.session.drafts.set("height.level", 0.75)
+    pane.run_frames(2)
+    pane.bench.actions.save_values()
+    text = sketch.read_text(encoding="utf-8")
+    assert "# mine\n" in text and "level = 0.75" in text
+    pane.bench.files.take_saved({sketch})
+    pane.run_frames(WAITS)
+    assert pane.editor("sketch.toml").get_text() == text and not unsaved(pane.bench.files.editing)
+    assert pane.height() == 0.75
+
+
+def test_a_technique_of_the_library_is_copied_into_the_sketch(pane: Pane, folder: Path) -> None:
+    sketch = folder / "sketch.toml"
+    text = sketch.read_text(encoding="utf-8").replace('"./terrain"', '"generation/fbm"')
+    sketch.write_text(text, encoding="utf-8")
+    pane.session.drafts.reload()
+    pane.run_frames(4)
+    file = GLSL / "generation/fbm.glsl"
+    pane.bench.files.open(file, here=True)
+    pane.run_frames(4)
+    before = pane.editor("fbm.glsl").get_text()
+    pane.type("x")
+    assert pane.editor("fbm.glsl").get_text() == before, "it is not to be changed"
+    pane.click("Copy into this sketch###copy in")
+    pane.run_frames(4)
+    copy = folder / "fbm.glsl"
+    assert copy.read_bytes() == file.read_bytes() and pane.session.error is None
+    assert [spec.use for spec in pane.session.sketch.graph.passes][:1] == ["./fbm"]
+    assert pane.bench.files.current.text.path == copy

@@ -16,13 +16,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-from playground.allowed_files import TEXTS, signature
+from playground.allowed_files import TEXTS, looking_once, reading_unsaved, root_of, signature
+from playground.engine.meshes import MESHES
+from playground.engine.sources import SOURCES
 from playground.errors import DataError, Diagnostic, PlaygroundError
 from playground.files import partial_file, read_regular, reason
 from playground.memo import INTERFACE
 from playground.paths import GLSL, SKETCHES, shown, without_part
 from playground.shader.libraries import libraries, library_around
 from playground.sketch.model import Sketch
+from playground.sketch.suggestions import Suggestion, suggestions
 from playground.studio.code.editors import Opener, find_editor
 from playground.studio.code.unsaved_texts import KeptTexts, hash_of_text
 from playground.studio.language import tr
@@ -389,6 +392,18 @@ class OpenFiles:
                 if theirs != mine:
                     note = "{file} was saved by others; undo brings back what was typed"
                     self.notices.say(tr(note, file=text.path.name))
+
+    def suggest(self, path: Path, text: str, at: int) -> list[Suggestion]:
+        """Return what may stand at a place of an open kernel's text; nothing in a sketch's TOML."""
+        if path.suffix == ".toml":
+            return []
+        texts = {e.text.path: typed for e in self.editing if (typed := typed_in(e)) is not None}
+        listed = {"mesh": tuple(MESHES), "name": tuple(SOURCES)}
+        try:
+            with reading_unsaved({**texts, path: text}), looking_once():
+                return suggestions(path, text, root_of(path), at, listed)
+        except PlaygroundError:
+            return []
 
     # ── mistakes ─────────────────────────────────────────────────────────────
 

@@ -19,9 +19,10 @@ from imgui_bundle import imgui_color_text_edit as text_edit
 
 from playground.errors import Diagnostic
 from playground.paths import shown, without_part
+from playground.sketch.suggestions import Suggestion, include_row
 from playground.studio import theme
 from playground.studio.code.open_files import Editing, OpenFiles, library_files
-from playground.studio.draw import button, buttons, ctrl_held, styled
+from playground.studio.draw import QUIET, button, buttons, ctrl_held, inked, styled, window
 from playground.studio.language import tr
 from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named
@@ -103,6 +104,20 @@ _Pos = text_edit.TextEditor.DocPos
 
 
 @dataclass
+class _Completion:
+    """What may stand where something is being typed."""
+
+    found: list[Suggestion] = field(default_factory=list)
+    at: int = 0  # which is chosen
+    prefix: str = ""
+    is_closed: bool = True  # until the next letter of a word
+
+    def close(self) -> None:
+        """Show nothing until something else is typed."""
+        self.found, self.is_closed = [], True
+
+
+@dataclass
 class _View:
     """The editor of one open file."""
 
@@ -117,6 +132,7 @@ class _View:
     closing: bool = False  # a question is shown: save or not
     is_light: bool | None = None  # its colours
     focused_for: int = 0  # frames for which it has had the keys
+    completion: _Completion = field(default_factory=_Completion)
 
     @property
     def changed(self) -> bool:
@@ -129,12 +145,13 @@ class _View:
         is_fixed = self.editor.is_read_only_enabled()
         self.editor.set_read_only_enabled(False)
         at = self.editor.get_main_cursor_position()
+        before = self.editor.get_undo_index()
         self.editor.select_all()
         _insert(self, text)
         line = min(at.line, self.editor.get_line_count() - 1)
         self.editor.set_cursor(_Pos(line, min(at.index, len(self.editor.get_line_text(line)))))
         self.editor.set_read_only_enabled(is_fixed)
-        self._note_step()
+        self.note_step(before)
 
     def note_saved(self) -> None:
         self.saved_at = self.editor.get_undo_index()
@@ -165,11 +182,10 @@ class _View:
         self.index, self.typed_at = index, now
         return True
 
-    def _note_step(self) -> None:
-        """Make the last change a step of undo of its own."""
-        index = self.editor.get_undo_index()
-        self.steps = [step for step in self.steps if step < index - 1] + [index - 1, index]
-        self.index = index
+    def note_step(self, before: int) -> None:
+        """Make what changed since an undo index a step of undo of its own."""
+        self.index = self.editor.get_undo_index()
+        self.steps = [*(step for step in self.steps if step < before), before, self.index]
 
     def _begins_word(self) -> bool:
         """Return whether what was typed begins a line or a word, or is the blank before one."""
@@ -262,6 +278,14 @@ def stay(files: OpenFiles) -> None:
             editing.view.closing = False
 
 
+def close_completion(files: OpenFiles) -> bool:
+    """Close the list of what may stand at the cursor; return whether it was open."""
+    views = [e.view for e in files.editing if isinstance(e.view, _View) and e.view.completion.found]
+    for view in views:
+        view.completion.close()
+    return bool(views)
+
+
 def give_back_keys(files: OpenFiles) -> None:
     """Give the keys back to the picture."""
     imgui.set_window_focus(None)
@@ -314,6 +338,7 @@ def _draw_text(editing: Editing, files: OpenFiles, problems: Problems, look: The
     _draw_bar(editing, view, files, look)
     if focused:
         _take_keys(editing, view, files)
+        _choose_completion(view)
     if editing.focus:
         editing.focus = False
         imgui.set_window_focus()
@@ -324,11 +349,16 @@ def _draw_text(editing: Editing, files: OpenFiles, problems: Problems, look: The
         view.editor.set_focus()  # after a click on a tab or a button
     if focused and not imgui.is_any_item_active():  # Enter in the search field finds
         _indent(view)
+    below = imgui.get_text_line_height_with_spacing() if view.marked[1] else 0.0
     with look.font(look.code), styled({imgui.Col_.child_bg: theme.colour(theme.palette.ground)}):
-        view.editor.render(_TEXT, ImVec2(0, 0))
+        view.editor.render(_TEXT, ImVec2(0, -below))
         _draw_behind(view, look)
+    if below:
+        _draw_mistake(view, look)
     if view.follow(imgui.get_time()):
         view.waits = True
+        _complete(editing, view, files)
+    _draw_completion(view, look)
 
 
 def _take_keys(editing: Editing, view: _View, files: OpenFiles) -> None:
@@ -456,6 +486,132 @@ def _draw_behind(view: _View, look: Theme) -> None:
             cut = text if len(text) <= room else f"{text[: room - 1]}…"
             draw.add_text(ImVec2(x, place.y), theme.packed(rgb), cut)
     imgui.end_child()
+
+
+def _draw_mistake(view: _View, look: Theme) -> None:
+    """Write the mistake of the cursor's line below the text, or the first; a click leads there."""
+    mine = view.marked[1]
+    line = view.editor.get_main_cursor_position().line + 1
+    diagnostic = next((d for d in mine if d.line == line), mine[0])
+    is_error = diagnostic.severity == "error"
+    words = f"{diagnostic.line}: {' '.join(diagnostic.message.split())}"
+    with inked(theme.palette.alarm if is_error else theme.palette.warm), look.font(look.text, theme.SMALL):
+        room = imgui.get_content_region_avail().x
+        most = max(int(room / max(imgui.calc_text_size("n").x, 1.0)), 8)
+        if imgui.selectable(f"{_cut(words, most)}###mistake", False)[0]:
+            at = _Pos(diagnostic.line - 1, max(diagnostic.column - 1, 0))
+            view.editor.set_cursor(at)
+            view.editor.scroll_to_line(at.line, text_edit.TextEditor.Scroll.align_middle)
+            view.editor.set_focus()
+    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+        imgui.set_tooltip(textwrap.fill(diagnostic.message, 70))
+
+
+# ── completion ───────────────────────────────────────────────────────────────
+
+
+_MOST = 9  # rows of what may stand there
+_PREFIX = re.compile(r"[A-Za-z_]\w*$")
+_CHOOSE = (imgui.Key.up_arrow, imgui.Key.down_arrow, imgui.Key.enter, imgui.Key.keypad_enter, imgui.Key.tab)
+
+
+def _complete(editing: Editing, view: _View, files: OpenFiles) -> None:
+    """Look for what may stand where something was typed."""
+    shown, editor = view.completion, view.editor
+    at = editor.get_main_cursor_position()
+    before = editor.get_line_text(at.line)[: at.index]
+    word = _PREFIX.search(before)
+    prefix = word[0] if word else ""
+    behind_dot = before[: len(before) - len(prefix)].endswith(".")
+    is_shorter, shown.prefix = len(prefix) < len(shown.prefix), prefix
+    if not (len(prefix) > 1 or behind_dot) or (is_shorter and shown.is_closed):
+        shown.close()
+        return
+    start = len(before) - len(prefix)
+    text = view.written()
+    offset = sum(len(line) + 1 for line in text.split("\n")[: at.line]) + start + len(prefix)
+    names = files.suggest(editing.text.path, text, offset)
+    lower = prefix.lower()
+    fitting = [s for s in names if s.label.lower().startswith(lower) and s.label != prefix and s.start < 0]
+    fitting.sort(key=lambda s: (not s.label.startswith(prefix), s.order, s.label.lower()))
+    shown.found, shown.at, shown.is_closed = fitting[:_MOST], 0, not fitting
+
+
+def _choose_completion(view: _View) -> None:
+    """Take the keys of an open list before the editor sees them."""
+    shown = view.completion
+    if not shown.found:
+        return
+    if imgui.is_key_pressed(imgui.Key.left_arrow) or imgui.is_key_pressed(imgui.Key.right_arrow):
+        shown.close()
+        return
+    pressed = [key for key in _CHOOSE if imgui.is_key_pressed(key)]
+    for key in _CHOOSE:
+        imgui.internal.set_key_owner(key, _OWNER, imgui.internal.InputFlagsPrivate_.lock_this_frame)
+    for key in pressed:
+        if key in _CHOOSE[:2]:
+            shown.at = (shown.at + (1 if key == imgui.Key.down_arrow else -1)) % len(shown.found)
+        else:
+            _accept(view, shown.found[shown.at])
+            return
+
+
+def _accept(view: _View, suggestion: Suggestion) -> None:
+    """Put what is chosen in the place of what is typed, and above it the include that it needs."""
+    editor, shown = view.editor, view.completion
+    at = editor.get_main_cursor_position()
+    start = _Pos(at.line, at.index - len(shown.prefix))
+    before = editor.get_undo_index()
+    editor.replace_section_text(start, at, suggestion.label)
+    row = include_row(view.written())
+    lines = 0
+    if suggestion.include:
+        include = f'#include "{suggestion.include}"\n'
+        editor.replace_section_text(_Pos(row, 0), _Pos(row, 0), include)
+        lines = int(row <= at.line)
+    editor.set_cursor(_Pos(at.line + lines, start.index + len(suggestion.label)))
+    view.note_step(before)
+    view.waits, view.typed_at = True, imgui.get_time()
+    shown.close()
+
+
+def _draw_completion(view: _View, look: Theme) -> None:
+    """Draw the list of what may stand at the cursor, and a line on the one that is chosen."""
+    shown, editor = view.completion, view.editor
+    if not shown.found or not view.focused_for:
+        return
+    at = editor.get_main_cursor_position()
+    place = editor.doc_pos2_screen_pos(_Pos(at.line, max(at.index - len(shown.prefix), 0)))
+    room, scale = imgui.get_main_viewport().size, look.scale
+    high = editor.get_line_height() * (len(shown.found) + 2)
+    below = place.y + editor.get_line_height() + high < room.y
+    imgui.set_next_window_pos(
+        ImVec2(min(place.x, room.x - 420 * scale), place.y + (editor.get_line_height() + 2 if below else -2)),
+        imgui.Cond_.always,
+        ImVec2(0, 0 if below else 1),
+    )
+    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.always_auto_resize | QUIET
+    flags |= imgui.WindowFlags_.tooltip | imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_nav
+    with window("completion", flags, ground=theme.colour(theme.palette.popup)), look.font(look.code):
+        for number, suggestion in enumerate(shown.found):
+            imgui.selectable(suggestion.label, number == shown.at, 0, ImVec2(160 * scale, 0))
+            imgui.same_line(180 * scale)
+            imgui.text_disabled(_cut(suggestion.detail, 28))
+        chosen = shown.found[shown.at]
+        about = chosen.about
+        if isinstance(chosen.origin, tuple):
+            about = chosen.origin[1].comment
+        elif chosen.origin is not None:
+            about = chosen.origin.tooltip
+        if chosen.include:
+            about = tr("adds #include {file}", file=chosen.include) + (f"; {about}" if about else "")
+        imgui.separator()
+        with look.font(look.text, theme.SMALL):
+            imgui.text_disabled(_cut(" ".join(about.split()), 64) or chosen.detail or chosen.kind)
+
+
+def _cut(text: str, most: int) -> str:
+    return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
 # ── questions ────────────────────────────────────────────────────────────────

@@ -256,6 +256,7 @@ class SketchFile:
     notices: Notices
     offer: str = ""  # why the sketch cannot be saved: a copy is offered
     asks: bool = False  # the offer is still to be shown
+    save_typed: Callable[[], None] = lambda: None  # saves what is typed in the sketch's file
 
     def write(self, act: Callable[[], None]) -> bool:
         """Write, and read the sketch again; return whether that worked. Else offer a copy or say why."""
@@ -265,6 +266,7 @@ class SketchFile:
             ways = f"open {name} again, or save a copy"
             self.notices.say(f"{name} is not saved while {other} is being opened: {ways}")
             return False
+        self.save_typed()
         try:
             act()
         except ReadOnlySketch as error:
