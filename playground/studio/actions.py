@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
-from playground.files import new_name, read_regular
+from playground.files import new_name, read_regular, write_file
 from playground.paths import GLSL, shown
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.model import Camera, Value
@@ -166,27 +166,39 @@ class Actions:
         self.session.open_copy(path, saved)
 
     def copy_technique(self, path: Path) -> Path | None:
-        """Copy a technique of the library into the sketch's folder, for the passes that it fills.
+        """Copy the technique of the library that a file is of into the sketch's folder; as one step.
 
-        Returns the copy; None, and a notice, where no pass names it or it cannot be written.
+        The passes that it fills are filled with the copy. Returns the file's copy; None, and a notice, where
+        no pass's technique has it in its own folder, or it cannot be written.
         """
         draft = self.session.shown
         passes = draft.sketch.graph.passes if draft is not None else ()
-        names = [spec.name for spec in passes if spec.technique.path == str(path)]
-        if draft is None or not names:
-            self.notices.say(f"{path.name} is a part of other files: no pass is filled by it alone")
+        roots = {Path(s.technique.path): s.technique for s in passes if str(path) in s.technique.files}
+        root = next((r for r in roots if path == r or path.is_relative_to(r.with_suffix(""))), None)
+        if draft is None or root is None:
+            self.notices.say(f"{path.name} is a part of other files, and no technique of a pass by itself")
+            return None
+        files = [root, *(f for f in map(Path, roots[root].files) if f.is_relative_to(root.with_suffix("")))]
+        copies = {file: Path(draft.sketch.folder) / file.relative_to(root.parent) for file in files}
+        taken = [copy for copy in copies.values() if copy.exists()]
+        if taken:
+            self.notices.say(f"{taken[0].name} is in the sketch's folder already; rename it, and copy again")
             return None
         try:
-            with new_name(Path(draft.sketch.folder) / path.name) as copy:
-                copy.write_bytes(read_regular(path))
+            for file, copy in copies.items():
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                write_file(copy, read_regular(file))
         except (OSError, PlaygroundError) as error:
             self.notices.say(f"{path.name} cannot be copied: {error}")
             return None
-        with self.undo.step(f"Copy {path.name}"):
-            for name in names:
-                self.session.drafts.choose(name, f"./{copy.stem}")
-        self.notices.say(f"copied {path.name} into {copy.parent}; Ctrl+S has the sketch use it from now on")
-        return copy
+        with self.undo.step(f"Copy {root.stem}"):
+            for spec in passes:
+                if spec.technique.path == str(root):
+                    self.session.drafts.choose(spec.name, f"./{root.stem}")
+        self.notices.say(
+            f"copied {root.stem} into the sketch's folder; Ctrl+S has the sketch use it from now on"
+        )
+        return copies[path]
 
     def save_as_preset(self, name: str) -> None:
         """Save the edited values as a preset of the sketch."""

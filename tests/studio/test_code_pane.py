@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.paths import GLSL
 from playground.sketch.shader_names import library_declared
 from playground.studio.code.open_files import Editing, is_changed, unsaved
 from playground.studio.code.panel import typing
@@ -250,20 +250,41 @@ def test_values_are_saved_with_what_is_typed_in_the_sketch(pane: Pane, folder: P
 
 
 def test_a_technique_of_the_library_is_copied_into_the_sketch(pane: Pane, folder: Path) -> None:
+    """One of several passes, by a file inside it: with its folder, drawn the same."""
     sketch = folder / "sketch.toml"
     text = sketch.read_text(encoding="utf-8").replace('"./terrain"', '"generation/fbm"')
     sketch.write_text(text, encoding="utf-8")
     pane.session.drafts.reload()
     pane.run_frames(4)
-    file = GLSL / "generation/fbm.glsl"
-    pane.bench.files.open(file, here=True)
+    before = pane.session.read_values("height:height")
+    (spec,) = [spec for spec in pane.session.sketch.graph.passes if spec.name == "height"]
+    inside = next(Path(f) for f in spec.technique.files if Path(f).parent.name == "fbm")
+    pane.bench.files.open(inside, here=True)
     pane.run_frames(4)
-    before = pane.editor("fbm.glsl").get_text()
+    shipped = pane.editor(inside.name).get_text()
     pane.type("x")
-    assert pane.editor("fbm.glsl").get_text() == before, "it is not to be changed"
+    assert pane.editor(inside.name).get_text() == shipped, "it is not to be changed"
     pane.click("Copy into this sketch###copy in")
     pane.run_frames(4)
-    copy = folder / "fbm.glsl"
-    assert copy.read_bytes() == file.read_bytes() and pane.session.error is None
-    assert [spec.use for spec in pane.session.sketch.graph.passes][:1] == ["./fbm"]
-    assert pane.bench.files.current.text.path == copy
+    copy = folder / "fbm" / inside.name
+    assert copy.read_bytes() == inside.read_bytes() and pane.session.error is None
+    (spec,) = [spec for spec in pane.session.sketch.graph.passes if spec.name == "height"]
+    assert spec.use == "./fbm" and pane.bench.files.current.text.path == copy
+    assert np.allclose(pane.session.read_values("height:height"), before, atol=1e-6)  # no fast variant
+    pane.key(imgui.Key.escape)
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    pane.run_frames(4)
+    (spec,) = [spec for spec in pane.session.sketch.graph.passes if spec.name == "height"]
+    assert spec.use == "generation/fbm", "one step"
+
+
+def test_a_window_that_closes_gives_the_pane_no_keys(pane: Pane) -> None:
+    pane.place(5, 17)
+    pane.key(imgui.Key.escape)
+    pane.bench.inspection.graph.toggle()
+    pane.run_frames(4)
+    pane.bench.inspection.graph.toggle()
+    pane.run_frames(6)
+    assert not typing(pane.bench.files)
+    pane.key(imgui.Key.m)
+    assert pane.session.view.map is not None

@@ -227,6 +227,8 @@ class OpenFiles:
     copy_in: Callable[[Path], None] = lambda path: None  # makes a file of the library the sketch's own
     waits: bool = False  # something is typed that is not drawn yet
     jumps: bool = False  # the pane is to show ``current``
+    has_keys: bool = False  # the pane
+    asked_at: int = -100  # the frame in which it was asked to take them
     sketch: Sketch | None = None  # that is shown
     _followed: tuple[Path | None, bool] = (None, False)
 

@@ -230,6 +230,7 @@ _TABS = imgui.TabBarFlags_.reorderable | imgui.TabBarFlags_.fitting_policy_scrol
 
 def draw_code(files: OpenFiles, problems: Problems, look: Theme) -> None:
     """Draw the code pane's contents into the current window."""
+    _take_or_leave_keys(files)
     seen: Editing | None = None
     if imgui.begin_tab_bar("files", _TABS):
         for editing in list(files.editing):
@@ -253,6 +254,24 @@ def draw_code(files: OpenFiles, problems: Problems, look: Theme) -> None:
             view.waits = False
             files.draw_typed(editing)
     files.waits = any(_view_of(e).waits for e in waiting)
+
+
+_JUST = 4  # frames that a click or a request takes to give the pane the keys
+
+
+def _take_or_leave_keys(files: OpenFiles) -> None:
+    """Take the keys by a click or where it was asked for, not because another window has closed."""
+    now, all_of_it = imgui.get_frame_count(), imgui.HoveredFlags_.root_and_child_windows
+    hovered = imgui.is_window_hovered(all_of_it | imgui.HoveredFlags_.allow_when_blocked_by_active_item)
+    if any(editing.focus for editing in files.editing) or (imgui.is_mouse_clicked(0) and hovered):
+        files.asked_at = now
+    is_new = now - files.asked_at <= _JUST
+    if not imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
+        files.has_keys = files.has_keys and is_new
+    elif files.has_keys or is_new:
+        files.has_keys = True
+    else:
+        imgui.set_window_focus(None)
 
 
 def draw_questions(files: OpenFiles) -> None:
@@ -289,6 +308,7 @@ def close_completion(files: OpenFiles) -> bool:
 def give_back_keys(files: OpenFiles) -> None:
     """Give the keys back to the picture."""
     imgui.set_window_focus(None)
+    files.has_keys, files.asked_at = False, -_JUST - 1
     for editing in files.editing:
         if isinstance(editing.view, _View):
             editing.view.focused_for = 0
