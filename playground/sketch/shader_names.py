@@ -14,7 +14,6 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError
 from playground.paths import GLSL
-from playground.shader.driver_log import library
 from playground.shader.header import parse_kernel, read_uniforms
 from playground.shader.names import Unit, includes, lexed, syntax_of, unit_of
 from playground.shader.outline import Declared, outline
@@ -189,6 +188,8 @@ def _reached(
 @cache
 def library_declared() -> dict[str, tuple[tuple[str, Declared], ...]]:
     """Return the functions of the library: name → the files to include, and how each declares it."""
+    from playground.shader.driver_log import library  # it reads the whole library, which a start does without
+
     declared: dict[str, list[tuple[str, Declared]]] = {}
     for name, files in library().items():
         for file in files:

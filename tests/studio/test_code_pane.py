@@ -228,6 +228,33 @@ def test_nothing_is_completed_in_a_comment(pane: Pane) -> None:
     assert "level" not in pane.editor().get_line_text(0)
 
 
+def test_a_name_is_explained_and_leads_to_its_declaration(pane: Pane) -> None:
+    pane.place(5, 14)
+    files, path = pane.bench.files, pane.session.path.parent / "terrain.glsl"
+    known = files.meaning(path, TERRAIN, 4, 13, "level")
+    assert known is not None and known.detail == "float" and known.origin.tooltip == "How high the hills are"  # type: ignore[union-attr]
+    assert files.meaning(path, TERRAIN, 4, 6, "return") is None
+    pane.key(imgui.Key.f12)
+    pane.run_frames(3)
+    at = pane.editor().get_main_cursor_position()
+    assert (at.line, at.index) == (2, TERRAIN.splitlines()[2].index("level"))
+    pane.place(6, 1)
+    pane.key(imgui.Key.f12)
+    assert "no declaration" in pane.bench.notices.items[-1].text
+
+
+def test_the_list_of_errors_does_not_open_while_code_is_typed(pane: Pane, folder: Path) -> None:
+    pane.place(5, 17)
+    pane.type(" + zzz")
+    pane.run_frames(WAITS)
+    assert pane.bench.problems.errors and not pane.bench.problems.open
+    pane.key(imgui.Key.escape)
+    (folder / "sketch.toml").write_text("format = 1\nsize = nine\n", encoding="utf-8")
+    pane.session.drafts.reload()
+    pane.run_frames(2)
+    assert pane.bench.problems.open, "one that another program saves opens it"
+
+
 # ── files that are not the sketch's own, and what else writes ─────────────────
 
 

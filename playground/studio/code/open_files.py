@@ -14,24 +14,24 @@ from collections.abc import Callable, Collection, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from playground.allowed_files import TEXTS, looking_once, reading_unsaved, root_of, signature
-from playground.engine.meshes import MESHES
-from playground.engine.sources import SOURCES
 from playground.errors import DataError, Diagnostic, PlaygroundError
 from playground.files import partial_file, read_regular, reason
 from playground.memo import INTERFACE
 from playground.paths import GLSL, SKETCHES, shown, without_part
 from playground.shader.libraries import libraries, library_around
 from playground.sketch.model import Sketch
-from playground.sketch.suggestions import Suggestion, suggestions
 from playground.studio.code.editors import Opener, find_editor
 from playground.studio.code.unsaved_texts import KeptTexts, hash_of_text
 from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named
+
+if TYPE_CHECKING:
+    from playground.sketch.suggestions import Suggestion
 
 MAX_FILE_BYTES = 8 * 2**20
 """Bytes that a file may have."""
@@ -182,6 +182,11 @@ def typed_in(editing: Editing) -> str | None:
     return view.written() if view is not None and view.changed else None
 
 
+def _offset(text: str, line: int, column: int) -> int:
+    """Return where a place is in a text; line and column from 0."""
+    return sum(len(each) + 1 for each in text.split("\n")[:line]) + column
+
+
 def own_files(sketch: Sketch) -> list[Path]:
     """Return the texts of a sketch that are its own: its file, then the kernels in its folder."""
     main, folder = Path(sketch.file), Path(sketch.folder)
@@ -231,6 +236,7 @@ class OpenFiles:
     asked_at: int = -100  # the frame in which it was asked to take them
     sketch: Sketch | None = None  # that is shown
     _followed: tuple[Path | None, bool] = (None, False)
+    _known: tuple[object, Suggestion | None] = (None, None)  # of the word that was asked for last
 
     # ── opening ──────────────────────────────────────────────────────────────
 
@@ -399,13 +405,50 @@ class OpenFiles:
         """Return what may stand at a place of an open kernel's text; nothing in a sketch's TOML."""
         if path.suffix == ".toml":
             return []
-        texts = {e.text.path: typed for e in self.editing if (typed := typed_in(e)) is not None}
+        from playground.engine.meshes import MESHES
+        from playground.engine.sources import SOURCES
+        from playground.sketch.suggestions import suggestions  # reads syntax, which a start does without
+
         listed = {"mesh": tuple(MESHES), "name": tuple(SOURCES)}
         try:
-            with reading_unsaved({**texts, path: text}), looking_once():
+            with reading_unsaved({**self._typed(), path: text}), looking_once():
                 return suggestions(path, text, root_of(path), at, listed)
         except PlaygroundError:
             return []
+
+    def meaning(self, path: Path, text: str, line: int, column: int, word: str) -> Suggestion | None:
+        """Return what is known of a word at a place of a kernel's text, both from 0; None for nothing."""
+        from playground.shader.names import word_at
+
+        key = path, text, line, word
+        if self._known[0] != key:
+            at = _offset(text, line, column)
+            end = word_at(text, at)[1] + len(word)
+            known = (s for s in self.suggest(path, text, end) if s.label == word and s.kind != "keyword")
+            self._known = key, next(known, None)
+        return self._known[1]
+
+    def open_declaration(self, path: Path, text: str, line: int, column: int) -> None:
+        """Open the place where the name at a place of a kernel's text, both from 0, is declared."""
+        from playground.shader.names import word_at
+        from playground.sketch.shader_names import shader_at
+
+        at = _offset(text, line, column)
+        word, start = word_at(text, at)
+        site = None
+        with reading_unsaved({**self._typed(), path: text}), looking_once(), suppress(PlaygroundError):
+            if word and path.suffix != ".toml":
+                site = shader_at(path, text, root_of(path)).find(word, start)
+        if site is None:
+            self.notices.say(tr("no declaration of {name} is known here", name=word or "…"))
+            return
+        before = site.text[: site.at]
+        column = site.at - before.rfind("\n")
+        self.open(site.path, before.count("\n") + 1, column, here=True)
+
+    def _typed(self) -> dict[Path, str]:
+        """Return what is typed in open files and not saved."""
+        return {e.text.path: typed for e in self.editing if (typed := typed_in(e)) is not None}
 
     # ── mistakes ─────────────────────────────────────────────────────────────
 

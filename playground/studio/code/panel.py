@@ -13,13 +13,13 @@ from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import imgui_color_text_edit as text_edit
 
 from playground.errors import Diagnostic
 from playground.paths import shown, without_part
-from playground.sketch.suggestions import Suggestion, include_row
 from playground.studio import theme
 from playground.studio.code.open_files import Editing, OpenFiles, library_files
 from playground.studio.draw import QUIET, button, buttons, ctrl_held, inked, styled, window
@@ -27,6 +27,9 @@ from playground.studio.language import tr
 from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named
 from playground.studio.theme import Theme
+
+if TYPE_CHECKING:
+    from playground.sketch.suggestions import Suggestion
 
 # ── indentation ───────────────────────────────────────────────────────────────
 
@@ -372,6 +375,8 @@ def _draw_text(editing: Editing, files: OpenFiles, problems: Problems, look: The
     below = imgui.get_text_line_height_with_spacing() if view.marked[1] else 0.0
     with look.font(look.code), styled({imgui.Col_.child_bg: theme.colour(theme.palette.ground)}):
         view.editor.render(_TEXT, ImVec2(0, -below))
+        if imgui.is_item_hovered():
+            _explain(editing, view, files, look)
         _draw_behind(view, look)
     if below:
         _draw_mistake(view, look)
@@ -389,6 +394,9 @@ def _take_keys(editing: Editing, view: _View, files: OpenFiles) -> None:
             if imgui.is_key_pressed(key):
                 imgui.internal.set_key_owner(key, _OWNER, imgui.internal.InputFlagsPrivate_.lock_this_frame)
                 (view.redo if imgui.get_io().key_shift else act)()
+    if imgui.is_key_pressed(imgui.Key.f12, False):
+        at = view.editor.get_main_cursor_position()
+        files.open_declaration(editing.text.path, view.written(), at.line, at.index)
     imgui.get_io().want_text_input = True  # keys are this editor's, not the picture's
 
 
@@ -583,6 +591,8 @@ def _accept(view: _View, suggestion: Suggestion) -> None:
     start = _Pos(at.line, at.index - len(shown.prefix))
     before = editor.get_undo_index()
     editor.replace_section_text(start, at, suggestion.label)
+    from playground.sketch.suggestions import include_row
+
     row = include_row(view.written())
     lines = 0
     if suggestion.include:
@@ -614,20 +624,47 @@ def _draw_completion(view: _View, look: Theme) -> None:
     flags |= imgui.WindowFlags_.tooltip | imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_nav
     with window("completion", flags, ground=theme.colour(theme.palette.popup)), look.font(look.code):
         for number, suggestion in enumerate(shown.found):
-            imgui.selectable(suggestion.label, number == shown.at, 0, ImVec2(160 * scale, 0))
+            imgui.selectable(_cut(suggestion.label, 22), number == shown.at, 0, ImVec2(160 * scale, 0))
             imgui.same_line(180 * scale)
             imgui.text_disabled(_cut(suggestion.detail, 28))
         chosen = shown.found[shown.at]
-        about = chosen.about
-        if isinstance(chosen.origin, tuple):
-            about = chosen.origin[1].comment
-        elif chosen.origin is not None:
-            about = chosen.origin.tooltip
+        about = _about(chosen)
         if chosen.include:
             about = tr("adds #include {file}", file=chosen.include) + (f"; {about}" if about else "")
         imgui.separator()
         with look.font(look.text, theme.SMALL):
-            imgui.text_disabled(_cut(" ".join(about.split()), 64) or chosen.detail or chosen.kind)
+            imgui.text_disabled(_cut(about, 64) or chosen.detail or chosen.kind)
+
+
+def _about(suggestion: Suggestion) -> str:
+    """Return what is known of a name, on one line."""
+    about, origin = suggestion.about, suggestion.origin
+    if isinstance(origin, tuple):
+        about = origin[1].comment
+    elif origin is not None:
+        about = origin.tooltip
+    return " ".join(about.split())
+
+
+_RESTS = 0.5  # [s] the mouse rests on a name until its explanation is shown
+
+
+def _explain(editing: Editing, view: _View, files: OpenFiles, look: Theme) -> None:
+    """Show what the name under the mouse is, once the mouse rests."""
+    editor, mouse = view.editor, imgui.get_mouse_pos()
+    if imgui.get_current_context().mouse_stationary_timer < _RESTS or view.completion.found:
+        return
+    if not editor.is_mouse_pos_over_glyph(mouse):
+        return
+    word = editor.get_word_at_mouse_pos(mouse)
+    if not _PREFIX.fullmatch(word or ""):
+        return
+    at = editor.get_doc_pos_at_mouse_pos(mouse)
+    known = files.meaning(editing.text.path, view.written(), at.line, at.index, word)
+    if known is not None:
+        with look.font(look.code, theme.SMALL):
+            text = "\n".join(filter(None, [known.detail, textwrap.fill(_about(known), 60)]))
+            imgui.set_tooltip(f"{word}: {text}" if known.kind != "function" else text)
 
 
 def _cut(text: str, most: int) -> str:

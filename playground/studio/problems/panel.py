@@ -72,8 +72,8 @@ def short_place(location: str, folder: str) -> str:
 MAX_ROWS = 60
 """Diagnostics drawn at most."""
 _MAX_HEIGHT = 0.5  # fraction of the picture that the list may cover
-_GROUND = (0.17, 0.075, 0.075)  # under errors
-_MILD = (0.125, 0.118, 0.095)  # under warnings alone
+_GROUND = {False: (0.17, 0.075, 0.075), True: (0.995, 0.930, 0.925)}  # under errors, dark and light
+_MILD = {False: (0.125, 0.118, 0.095), True: (0.985, 0.970, 0.930)}  # under warnings alone
 _FLAGS = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize
 _FLAGS |= imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_focus_on_appearing
 _FLAGS |= imgui.WindowFlags_.no_bring_to_front_on_focus
@@ -102,7 +102,8 @@ class ErrorsList:
         margin = 14 * look.scale
         position = ImVec2(area[0] + margin, area[1] + area[3] - margin)
         imgui.set_next_window_pos(position, imgui.Cond_.always, ImVec2(0, 1))
-        ground = theme.colour(_GROUND if self.problems.errors else _MILD, 0.95)
+        grounds = _GROUND if self.problems.errors else _MILD
+        ground = theme.colour(grounds[theme.palette.is_light], 0.95)
         named = {getattr(imgui.StyleVar_, key): value for key, value in sizes.items()}
         return window(name, _FLAGS, ground=ground, rounding=8 * look.scale, sizes=named)
 

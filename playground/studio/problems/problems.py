@@ -40,6 +40,7 @@ class Problems:
     at: int = -1  # which is looked at; -1: none yet
     heights: dict[tuple[int, float], float] = field(default_factory=dict)  # of each as drawn, by width
     moved: bool = False  # it was moved to another, which must come into view
+    is_quiet: bool = False  # code is being typed, with mistakes behind its lines: the list does not open
     unsaved: Mapping[Path, str] = field(default_factory=dict)  # texts in place of what files hold, by path
     _error: PlaygroundError | None = None
     _also: tuple[Diagnostic, ...] = ()  # mistakes in files after the first wrong one
@@ -80,7 +81,7 @@ class Problems:
         if error is not self._error:
             self._error, self.errors = error, errors
             self.at = min(self.at, len(self.all) - 1)
-            self.open = error is not None
+            self.open = error is not None and (self.open or not self.is_quiet)
         elif not self.errors and not self.warnings:
             self.open, self.at = False, -1
         if before != (self.errors, self.warnings):
