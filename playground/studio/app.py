@@ -82,7 +82,6 @@ if TYPE_CHECKING:
 
 FRAME = 1 / 60  # [s] between pictures while time runs
 IDLE = 1.0  # [s] between frames while nothing happens
-_TYPED = 0.05  # [s] between looks at whether what is typed is to be drawn
 _SANDBOX = 0.1  # [s] between questions to the sandbox, whose answer wakes the window
 _SETTLES = 3  # frames that the panel takes to settle after something happened
 _MAX_STEP = 0.25  # [s] time never jumps by more, however long a frame took
@@ -387,10 +386,10 @@ class Live:
             return QUIET / 2
         if self.bench.notices.items or self.start_panel.waits:
             return 0.1
+        if self.bench.files.draws_in is not None:
+            return self.bench.files.draws_in
         if self.readout.waits:
             return 0.25
-        if self.bench.files.waits:
-            return _TYPED
         if imgui.get_io().want_text_input:
             return 0.1
         return IDLE

@@ -140,6 +140,18 @@ def test_undo_goes_by_words_and_pauses(pane: Pane) -> None:
     assert pane.editor().get_line_text(4) == "    return level + one twothree;"
 
 
+def test_letters_that_come_within_one_frame_are_undone_by_words(pane: Pane) -> None:
+    pane.place(5, 17)
+    for letter in " + one two":
+        imgui.get_io().add_input_character(ord(letter))
+    pane.run_frames(3)
+    assert pane.editor().get_line_text(4) == "    return level + one two;"
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    assert pane.editor().get_line_text(4) == "    return level + one;"
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    assert pane.editor().get_line_text(4) == "    return level +;"
+
+
 def test_what_is_typed_is_there_again(pane: Pane, folder: Path, open_pane: Callable[[], Pane]) -> None:
     pane.place(5, 17)
     pane.type(" * 0.5")

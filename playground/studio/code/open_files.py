@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import threading
 import time
 from collections.abc import Callable, Collection, Iterable
 from contextlib import suppress
@@ -182,6 +183,12 @@ def typed_in(editing: Editing) -> str | None:
     return view.written() if view is not None and view.changed else None
 
 
+def _read_library() -> None:
+    from playground.sketch.shader_names import library_declared
+
+    library_declared()
+
+
 def _offset(text: str, line: int, column: int) -> int:
     """Return where a place is in a text; line and column from 0."""
     return sum(len(each) + 1 for each in text.split("\n")[:line]) + column
@@ -230,12 +237,13 @@ class OpenFiles:
     take_typed: Callable[[Path, str | None], None] = lambda path, text: None  # draws it; None: the file
     show: Callable[[], None] = lambda: None  # opens the code pane
     copy_in: Callable[[Path], None] = lambda path: None  # makes a file of the library the sketch's own
-    waits: bool = False  # something is typed that is not drawn yet
+    draws_in: float | None = None  # [s] until what is typed is drawn; None: it is
     jumps: bool = False  # the pane is to show ``current``
     has_keys: bool = False  # the pane
     asked_at: int = -100  # the frame in which it was asked to take them
     sketch: Sketch | None = None  # that is shown
     _followed: tuple[Path | None, bool] = (None, False)
+    _is_prepared: bool = False
     _known: tuple[object, Suggestion | None] = (None, None)  # of the word that was asked for last
 
     # ── opening ──────────────────────────────────────────────────────────────
@@ -400,6 +408,12 @@ class OpenFiles:
                 if theirs != mine:
                     note = "{file} was saved by others; undo brings back what was typed"
                     self.notices.say(tr(note, file=text.path.name))
+
+    def prepare(self) -> None:
+        """Read what the library declares, in the background: the first completion need not wait for it."""
+        if not self._is_prepared:
+            self._is_prepared = True
+            threading.Thread(target=_read_library, name="library", daemon=True).start()
 
     def suggest(self, path: Path, text: str, at: int) -> list[Suggestion]:
         """Return what may stand at a place of an open kernel's text; nothing in a sketch's TOML."""

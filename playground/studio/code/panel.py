@@ -179,9 +179,12 @@ class _View:
         index = self.editor.get_undo_index()
         if index == self.index:
             return False
-        if index == self.index + 1 and (now - self.typed_at > _PAUSE or self._begins_word()):
-            del self.steps[bisect_left(self.steps, self.index) :]
-            self.steps.append(self.index)
+        if index > self.index and index not in self.steps:  # else it was undone, or done again
+            begins = [at for at in range(self.index, index) if self._begins_word(index - at - 1)]
+            if now - self.typed_at > _PAUSE and self.index not in begins:
+                begins.insert(0, self.index)
+            if begins:
+                self.steps = [*self.steps[: bisect_left(self.steps, begins[0])], *begins]
         self.index, self.typed_at = index, now
         return True
 
@@ -190,10 +193,13 @@ class _View:
         self.index = self.editor.get_undo_index()
         self.steps = [*(step for step in self.steps if step < before), before, self.index]
 
-    def _begins_word(self) -> bool:
-        """Return whether what was typed begins a line or a word, or is the blank before one."""
+    def _begins_word(self, since: int) -> bool:
+        """Return whether the letter typed before the last ``since`` begins a line or a word.
+
+        So does the blank before a word.
+        """
         at = self.editor.get_main_cursor_position()
-        before = self.editor.get_line_text(at.line)[: at.index]
+        before = self.editor.get_line_text(at.line)[: max(at.index - since, 0)]
         return not before.strip() or re.search(r"\S\s$|[^\w\s]\w$", before) is not None
 
 
@@ -256,7 +262,8 @@ def draw_code(files: OpenFiles, problems: Problems, look: Theme) -> None:
         if imgui.get_time() - view.typed_at >= PATIENCE or editing is not seen:
             view.waits = False
             files.draw_typed(editing)
-    files.waits = any(_view_of(e).waits for e in waiting)
+    left = [PATIENCE - imgui.get_time() + view.typed_at for e in waiting if (view := _view_of(e)).waits]
+    files.draws_in = max(min(left), 0.0) if left else None
 
 
 _JUST = 4  # frames that a click or a request takes to give the pane the keys
@@ -273,6 +280,7 @@ def _take_or_leave_keys(files: OpenFiles) -> None:
         files.has_keys = files.has_keys and is_new
     elif files.has_keys or is_new:
         files.has_keys = True
+        files.prepare()
     else:
         imgui.set_window_focus(None)
 
