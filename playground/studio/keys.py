@@ -318,7 +318,7 @@ GESTURES = (
 
 _AROUND = 5
 """Lines that the heading and the margins take; where all do not fit, the text is smaller."""
-_SIZES = theme.TEXT_SIZE, theme.SMALL, theme.SMALL - 1
+_SIZES = theme.TEXT_SIZE, theme.SMALL, theme.SMALL - 1, theme.SMALL - 2
 
 
 def draw_keymap(interface: Interface, look: Theme) -> None:

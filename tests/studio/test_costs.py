@@ -440,7 +440,7 @@ def test_the_corner_counts_the_pictures_of_the_last_second(bare: Bare) -> None:
     assert "at rest" in readout.text()
 
 
-def test_a_click_on_the_corner_opens_the_costs_and_its_key_hides_it(bare: Bare, tmp_path: Path) -> None:
+def test_the_corner_opens_the_costs_and_its_key_hides_it(bare: Bare, tmp_path: Path) -> None:
     readout = Readout(bare.session, lambda: bare.time)
     preferences = bare.bench.interface.preferences
     preferences.file = tmp_path / "interface.json"
