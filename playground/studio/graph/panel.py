@@ -252,9 +252,10 @@ class GraphPanel:
         if target is None and over and over != giver:
             target = over, wiring.input_for(giver, output, over)
         refused = target is not None and (not target[1] or graph.is_refused(giver, target[0]))
-        end = (
-            pins.inputs.get(target, mouse) if target is not None else (mouse if not graph.by_keys else start)
-        )
+        end = start if graph.by_keys else mouse
+        if target is not None:
+            x, y = corner_of(wiring, target[0])
+            end = pins.inputs.get(target) or canvas.place(x, y + HIGH / 2)  # a node without an input
         ink = theme.packed(theme.palette.alarm if refused else theme.palette.accent)
         bend = max(0.5 * abs(end.x - start.x), 26 * canvas.k)
         draw = imgui.get_window_draw_list()
