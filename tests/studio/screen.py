@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from playground.paths import NAME
+from playground.paths import NAME, state_folder
 
 from ..sketch_texts import passes
 
@@ -108,6 +108,11 @@ class Program:
         environment = {k: v for k, v in os.environ.items() if k not in gone}
         # What it remembers is a test's own, and gone with it.
         environment |= {"XDG_STATE_HOME": str(folder / "state"), "XDG_CACHE_HOME": str(folder / "cache")}
+        # The group Terrain is folded, so that there is room in small windows for what follows it.
+        preferences = state_folder("linux", environment) / "interface.json"
+        if not preferences.exists():
+            preferences.parent.mkdir(parents=True, exist_ok=True)
+            preferences.write_text(json.dumps({"format": 1, "panes": {"terrain": 0.0}}), encoding="utf-8")
         environment |= {"DISPLAY": screen.display, "PLAYGROUND_STATUS": str(self.status)}
         places = filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")])
         environment["PYTHONPATH"] = os.pathsep.join(places)
