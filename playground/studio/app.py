@@ -432,7 +432,9 @@ class Live:
         area = places.picture
         guard.draw(
             "the code",
-            lambda: self.panes.draw_code(places, lambda: draw_code(bench.files, bench.problems, look)),
+            lambda: self.panes.draw_code(
+                places, lambda: draw_code(bench.files, bench.problems, look, bench.tracing)
+            ),
             None,
         )
         guard.draw("the question on a file", lambda: draw_questions(bench.files), None)

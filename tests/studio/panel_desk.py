@@ -194,7 +194,7 @@ class Bare:
     def draw_pane(self, area: tuple[float, float, float, float] = (780.0, 0.0, 500.0, 720.0)) -> None:
         """Draw the code pane at a place, and the question on a file that is to be closed."""
         files, problems = self.bench.files, self.bench.problems
-        draw_pane("code pane", area, lambda: draw_code(files, problems, self.theme))
+        draw_pane("code pane", area, lambda: draw_code(files, problems, self.theme, self.bench.tracing))
         draw_questions(files)
 
     def close(self) -> None:

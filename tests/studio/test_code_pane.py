@@ -327,3 +327,54 @@ def test_a_window_that_closes_gives_the_pane_no_keys(pane: Pane) -> None:
     assert not typing(pane.bench.files)
     pane.key(imgui.Key.m)
     assert pane.session.view.map is not None
+
+
+# ── values of a traced texel ──────────────────────────────────────────────────
+
+LOOP = """// terrain.glsl -- a sum
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) {
+    float sum = 0.0;
+    for (int i = 0; i < 4; i++)
+        sum += 0.5;
+    return sum;
+}
+"""
+
+
+def test_values_stand_behind_the_lines_with_a_slider_for_a_loop(pane: Pane, folder: Path) -> None:
+    tracing = pane.bench.tracing
+    (folder / "terrain.glsl").write_text(LOOP, encoding="utf-8")
+    pane.session.drafts.reload()
+    pane.bench.files.take_saved({folder / "terrain.glsl"})
+    pane.run_frames(4)
+    pane.session.show("height:height")
+    tracing.toggle()
+    tracing.pin_at((10, 10), (48, 32))
+    draw = pane.draw
+
+    def traced() -> None:
+        tracing.update(pane.picture)
+        draw()
+
+    pane.draw = traced  # type: ignore[method-assign]
+    pane.run_frames(6)
+    assert tracing.view is not None, tracing.message
+    x, y, wide, high = pane.places["##turn 5 0"]
+    seen = [row for row in tracing.view.rows(str(folder / "terrain.glsl")) if row.items]
+    assert [item.text for row in seen if row.number == 6 for item in row.items] == ["2"]
+    cursor = pane.editor().get_main_cursor_position()
+    imgui.get_io().add_mouse_pos_event(x + 2, y + high / 2)
+    pane.run_frames(2)
+    pane.press(True)
+    pane.press(False)
+    pane.run_frames(2)
+    rows = tracing.view.rows(str(folder / "terrain.glsl"))
+    assert [item.text for row in rows if row.number == 6 for item in row.items] == ["0.5"]
+    after = pane.editor().get_main_cursor_position()
+    assert (after.line, after.index) == (cursor.line, cursor.index), "the slider takes the click"
+    pane.place(6, 5)
+    pane.type("x")
+    pane.places.clear()
+    pane.run_frames(2)
+    assert "##turn 5 0" in pane.places, "other lines keep theirs"

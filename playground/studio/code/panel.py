@@ -22,7 +22,7 @@ from playground.errors import Diagnostic
 from playground.paths import shown, without_part
 from playground.studio import theme
 from playground.studio.code.open_files import Editing, OpenFiles, library_files
-from playground.studio.draw import QUIET, button, buttons, ctrl_held, inked, styled, window
+from playground.studio.draw import QUIET, Area, button, buttons, ctrl_held, inked, styled, window
 from playground.studio.language import tr
 from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named
@@ -30,6 +30,7 @@ from playground.studio.theme import Theme
 
 if TYPE_CHECKING:
     from playground.sketch.suggestions import Suggestion
+    from playground.studio.trace.tracing import Tracing
 
 # ── indentation ───────────────────────────────────────────────────────────────
 
@@ -136,6 +137,7 @@ class _View:
     is_light: bool | None = None  # its colours
     focused_for: int = 0  # frames for which it has had the keys
     completion: _Completion = field(default_factory=_Completion)
+    sliders: list[Area] = field(default_factory=list)  # over the text: left, top, right, bottom
 
     @property
     def changed(self) -> bool:
@@ -237,8 +239,8 @@ def typing(files: OpenFiles) -> list[str]:
 _TABS = imgui.TabBarFlags_.reorderable | imgui.TabBarFlags_.fitting_policy_scroll
 
 
-def draw_code(files: OpenFiles, problems: Problems, look: Theme) -> None:
-    """Draw the code pane's contents into the current window."""
+def draw_code(files: OpenFiles, problems: Problems, look: Theme, tracing: Tracing | None = None) -> None:
+    """Draw the code pane's contents into the current window; the values of ``tracing`` behind their lines."""
     _take_or_leave_keys(files)
     seen: Editing | None = None
     if imgui.begin_tab_bar("files", _TABS):
@@ -255,7 +257,7 @@ def draw_code(files: OpenFiles, problems: Problems, look: Theme) -> None:
             editing.view.focused_for = 0
     if seen is not None:
         files.current = seen
-        _draw_text(seen, files, problems, look)
+        _draw_text(seen, files, problems, look, tracing if tracing is not None and tracing.on else None)
     waiting = [e for e in files.editing if isinstance(e.view, _View) and e.view.waits]
     for editing in waiting:
         view = _view_of(editing)
@@ -357,7 +359,9 @@ def _draw_others(files: OpenFiles) -> None:
     imgui.end_popup()
 
 
-def _draw_text(editing: Editing, files: OpenFiles, problems: Problems, look: Theme) -> None:
+def _draw_text(
+    editing: Editing, files: OpenFiles, problems: Problems, look: Theme, tracing: Tracing | None
+) -> None:
     view = _view_of(editing)
     if view.is_light is not theme.palette.is_light:
         view.is_light = theme.palette.is_light
@@ -382,10 +386,15 @@ def _draw_text(editing: Editing, files: OpenFiles, problems: Problems, look: The
         _indent(view)
     below = imgui.get_text_line_height_with_spacing() if view.marked[1] else 0.0
     with look.font(look.code), styled({imgui.Col_.child_bg: theme.colour(theme.palette.ground)}):
+        mouse = imgui.get_mouse_pos()
+        if any(x0 <= mouse.x < x1 and y0 <= mouse.y < y1 for x0, y0, x1, y1 in view.sliders):
+            imgui.get_io().mouse_pos = ImVec2(-9e5, -9e5)  # the editor does not see the mouse on a slider
         view.editor.render(_TEXT, ImVec2(0, -below))
+        imgui.get_io().mouse_pos = mouse
         if imgui.is_item_hovered():
             _explain(editing, view, files, look)
         _draw_behind(view, look)
+        view.sliders = _draw_values(editing, view, look, tracing) if tracing is not None else []
     if below:
         _draw_mistake(view, look)
     if view.follow(imgui.get_time()):
@@ -522,6 +531,61 @@ def _draw_behind(view: _View, look: Theme) -> None:
             cut = text if len(text) <= room else f"{text[: room - 1]}…"
             draw.add_text(ImVec2(x, place.y), theme.packed(rgb), cut)
     imgui.end_child()
+
+
+def _draw_values(editing: Editing, view: _View, look: Theme, tracing: Tracing) -> list[Area]:
+    """Write what a traced texel gave behind the lines that gave it, with a slider at each loop's head.
+
+    A line that reads otherwise than when it was traced has none. Returns where the sliders are.
+    """
+    trace, editor, places = tracing.view, view.editor, []
+    if trace is None or str(editing.text.path) not in trace.paths:
+        return []
+    imgui.begin_child(_TEXT)  # as in ``_draw_behind``
+    corner, size, wide = imgui.get_window_pos(), imgui.get_window_size(), editor.get_glyph_width()
+    draw, right, high = (
+        imgui.get_window_draw_list(),
+        corner.x + size.x - 16 * look.scale,
+        editor.get_line_height(),
+    )
+    first, last = editor.get_first_visible_row(), editor.get_last_visible_row()
+    wrong = {diagnostic.line for diagnostic in view.marked[1]}
+    dim = theme.packed(theme.palette.dim, 0.5 if tracing.is_stale or view.waits else 1.0)
+    for row in trace.rows(str(editing.text.path)):
+        line = row.number - 1
+        if not (row.items or row.loops) or row.number in wrong or line >= editor.get_line_count():
+            continue
+        text = editor.get_line_text(line)
+        end = _Pos(line, len(text))
+        if text.rstrip() != row.code.rstrip() or not first <= editor.doc_pos2_vis_pos(end).row <= last:
+            continue
+        place = editor.doc_pos2_screen_pos(end)
+        x = place.x + 3 * wide
+        for number, head in enumerate(row.loops):
+            if x + 16 * wide > right or head.count < 2:
+                continue
+            imgui.set_cursor_screen_pos(ImVec2(x, place.y + 1))
+            imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(3, 0))
+            imgui.set_next_item_width(16 * wide)
+            words = tr("turn {number} of {count}", number="%d", count=head.count)
+            label = f"##turn {row.number} {number}"
+            moved, chosen = imgui.slider_int(label, head.chosen + 1, 1, head.count, words)
+            imgui.pop_style_var()
+            if moved:
+                trace.choose_iteration(head, chosen - 1)
+            places.append((x, place.y, x + 16 * wide, place.y + high))
+            x += 17 * wide
+        words = "   ".join(f"{item.name} = {item.text}" if item.name else item.text for item in row.items)
+        room = int((right - x) / wide)
+        if words and room > 5:
+            is_finite = all(item.is_finite for item in row.items)
+            ink = dim if is_finite else theme.packed(theme.palette.alarm)
+            draw.add_text(ImVec2(x, place.y), ink, _cut(words, room))
+            whole = ImVec2(x + min(len(words), room) * wide, place.y + high)
+            if imgui.is_mouse_hovering_rect(ImVec2(x, place.y), whole):
+                imgui.set_tooltip("\n".join(f"{item.name}: {item.full}" for item in row.items))
+    imgui.end_child()
+    return places
 
 
 def _draw_mistake(view: _View, look: Theme) -> None:
