@@ -363,6 +363,10 @@ def _draw_text(
     editing: Editing, files: OpenFiles, problems: Problems, look: Theme, tracing: Tracing | None
 ) -> None:
     view = _view_of(editing)
+    view.editor.set_find_button_label(tr("Next"))
+    view.editor.set_find_all_button_label(tr("All"))
+    view.editor.set_replace_button_label(tr("Replace"))
+    view.editor.set_replace_all_button_label(f"{tr('All')}##replace")
     if view.is_light is not theme.palette.is_light:
         view.is_light = theme.palette.is_light
         of = text_edit.TextEditor
