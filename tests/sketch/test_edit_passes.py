@@ -118,7 +118,7 @@ def test_a_pass_comes_behind_another_and_its_readers_read_it(file: Path) -> None
     assert without == TEXT
 
 
-def test_a_pass_of_another_output_is_wired_and_takes_no_reader_away(file: Path) -> None:
+def test_a_pass_of_another_output_takes_no_reader_away(file: Path) -> None:
     sketch = edited(file, added(load(file), "lighting/horizons", "height"))
     assert ("height", "horizons") in joined(sketch) and ("height", "light") in joined(sketch)
     assert not any(giver == "horizons" for giver, _ in joined(sketch))
@@ -147,7 +147,7 @@ def test_without_a_view_in_the_file_the_picture_stays(file: Path) -> None:
     assert joined(sketch) == {("a", "view")} and sketch.graph.passes[-1].use == "view/map"
 
 
-def test_a_wire_is_written_where_its_pass_is_and_can_be_taken_away(file: Path) -> None:
+def test_a_wire_is_written_with_its_pass_and_taken_away(file: Path) -> None:
     edited(file, added(load(file), "generation/fbm"))
     sketch = edited(file, wired(load(file), "fbm", "height", "light", "height"))
     assert ("fbm", "light") in joined(sketch) and ("height", "light") not in joined(sketch)

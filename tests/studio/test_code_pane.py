@@ -320,9 +320,9 @@ def test_a_technique_of_the_library_is_copied_into_the_sketch(pane: Pane, folder
 def test_a_window_that_closes_gives_the_pane_no_keys(pane: Pane) -> None:
     pane.place(5, 17)
     pane.key(imgui.Key.escape)
-    pane.bench.inspection.graph.toggle()
+    pane.bench.interface.toggle_keymap()
     pane.run_frames(4)
-    pane.bench.inspection.graph.toggle()
+    pane.bench.interface.toggle_keymap()
     pane.run_frames(6)
     assert not typing(pane.bench.files)
     pane.key(imgui.Key.m)

@@ -105,7 +105,7 @@ def test_no_data_changes_and_nothing_is_made_again(open_session: OpenSession, fo
     assert session.plan is not None and session.plan.terrain.relief == RELIEF
 
 
-def test_a_kernel_of_ones_own_follows_where_it_has_a_direction_of_light(
+def test_a_kernel_of_ones_own_follows_if_light_has_a_direction(
     open_session: OpenSession, folder: Path
 ) -> None:
     session = opened(open_session, folder / "on_plane.toml")

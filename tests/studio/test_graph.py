@@ -412,7 +412,7 @@ def test_what_goes_on_from_an_output_is_offered_first() -> None:
     assert all(entry.title for entry in catalogue.entries.values())
 
 
-def test_a_muted_pass_is_left_out_of_the_picture_and_stays_in_the_file(passes_bare: Bare) -> None:
+def test_a_muted_pass_leaves_the_picture_and_not_the_file(passes_bare: Bare) -> None:
     bare, edits = passes_bare, passes_bare.bench.passes
     edits.add("generation/smooth", "height")
     settle(bare)

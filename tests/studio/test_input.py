@@ -13,7 +13,6 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.studio.addition import Addition, Layer
 from playground.studio.code.panel import ask_to_close
-from playground.studio.graph.panel import passes_tab
 from playground.studio.guard import Guard
 from playground.studio.interface import SIZES, Preferences, remembered_preferences
 from playground.studio.keys import all_keys, open_layers
@@ -150,13 +149,10 @@ def test_one_layer_at_a_time_and_then_none(layers_bare: Bare, tmp_path: Path) ->
     bench.additions = [Guest()]
     bench.inspection.compare.keep()
     bench.inspection.inspector.toggle()
-    bench.tabs.append(passes_tab(bench))
-    layers_bare.run_frames()
-    bench.inspection.graph.has_keys = True
     bench.files.open(tmp_path / "terrain.glsl", here=True)
     bench.interface.toggle_keymap()
     layers_bare.run_frames(3)
-    names = ["keys", "dialog", "editor terrain.glsl", "passes", "inspector", "A/B", "full screen", "guest"]
+    names = ["keys", "dialog", "editor terrain.glsl", "inspector", "A/B", "full screen", "guest"]
     for n in range(len(names)):
         assert open_layers(bench) == names[n:]
         escape(layers_bare)

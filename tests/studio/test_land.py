@@ -137,9 +137,7 @@ def test_views_are_kept_and_gone_back_to(bare: Bare) -> None:
     assert any("empty" in notice.text for notice in bare.bench.notices.items)
 
 
-def test_a_turntable_turns_the_picture_alone_and_stays_where_it_stops(
-    open_session: OpenSession, folder: Path
-) -> None:
+def test_a_turntable_turns_the_picture_and_stops_there(open_session: OpenSession, folder: Path) -> None:
     session: Session = open_session(folder)
     session.frame((48, 32))
     assert session.plan is not None and session.sketch is not None

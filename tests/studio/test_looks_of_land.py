@@ -43,9 +43,7 @@ def test_every_look_draws_and_none_changes_the_sketch(
     assert (folder / file).read_text(encoding="utf-8") == FILES[file]
 
 
-def test_slopes_are_coloured_by_degrees_and_not_by_what_is_exaggerated(
-    open_session: OpenSession, folder: Path
-) -> None:
+def test_slopes_are_coloured_by_true_degrees(open_session: OpenSession, folder: Path) -> None:
     session: Session = open_session(folder / "land.toml")
     session.frame((48, 32))
     look = look_of("slope", session.plan)

@@ -1,11 +1,11 @@
-"""Which kernels show the terrain, and so are given an exaggerated relief: those that draw it or light it.
-
-What computes heights, water, materials, slopes in degrees or lines of elevation keeps the true metres.
-"""
+"""Which kernels show the terrain, and so are given an exaggerated relief: those that draw it or light it."""
 
 from __future__ import annotations
 
+import tomllib
+from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 from playground.engine.exaggeration import Exaggeration
 from playground.paths import GLSL
@@ -16,22 +16,21 @@ from playground.sketch.techniques import name_of
 LARGEST = 10.0
 """How many times higher than it is a terrain can be shown."""
 
-_SHOWING = (
-    "lighting/",
-    "view/",
-    "scene/",
-    "objects/",
-    "clouds/",
-    "trees/place",
-    "trees/cover",
-    "trees/from_above",
-    "terrain/normal_map",
-    "water/sheet",
-    "water/sea",
-)
-_OF_ELEVATIONS = ("view/contours", "view/profile", "lighting/diagram")
-"""These write true metres."""
-_LEVELS = ("sea_level",)
+_RULES = GLSL / "exaggerated.toml"
+
+
+class _Rules(NamedTuple):
+    """What ``glsl/exaggerated.toml`` says: beginnings of kernels' names, and parameters."""
+
+    shows: tuple[str, ...]
+    keeps_metres: tuple[str, ...]
+    levels: tuple[str, ...]
+
+
+@cache
+def _rules() -> _Rules:
+    table = tomllib.loads(_RULES.read_text("utf-8"))
+    return _Rules(*(tuple(table[name]) for name in _Rules._fields))
 
 
 def exaggeration(factor: float) -> Exaggeration | None:
@@ -40,7 +39,7 @@ def exaggeration(factor: float) -> Exaggeration | None:
     The factor is brought between 0.1 and ``LARGEST``.
     """
     factor = min(max(factor, 0.1), LARGEST)
-    return None if factor == 1.0 else Exaggeration(factor, shows, _LEVELS)
+    return None if factor == 1.0 else Exaggeration(factor, shows, _rules().levels)
 
 
 def shows(kernel: Kernel) -> bool:
@@ -52,6 +51,6 @@ def shows(kernel: Kernel) -> bool:
         return True
     if Path(kernel.path).is_relative_to(GLSL):
         name = name_of(Path(kernel.path))
-        return name.startswith(_SHOWING) and not name.startswith(_OF_ELEVATIONS)
+        return name.startswith(_rules().shows) and not name.startswith(_rules().keeps_metres)
     directions = (p.name for p in kernel.parameters if p.widget.kind == "direction")
     return any(kernel.reads(f"{TOWARDS}{name}") for name in directions)

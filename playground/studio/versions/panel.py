@@ -191,7 +191,7 @@ class VersionsPanel:
             if not imgui.begin_popup_context_item("menu"):
                 return
             for label, act in (
-                ("Look", self.versions.look),
+                ("Look at it", self.versions.look),
                 ("Compare A/B", self.versions.compare),
                 ("Go back", self.versions.go_back),
                 ("As a new sketch", self.versions.as_new_sketch),
