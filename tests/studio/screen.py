@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from playground.paths import NAME, state_folder
+from playground.paths import NAME
+from playground.studio.interface import FORMAT
 
 from ..sketch_texts import passes
 
@@ -90,29 +91,25 @@ class Screen:
         self.server.wait(10)
 
 
-def close_panes(folder: Path) -> None:
-    """Have a program that keeps its state in a folder begin with the picture alone beside its panel."""
-    state = folder / "state" / NAME
-    state.mkdir(parents=True)
-    panes = {"code": 0, "strip": 0}
-    (state / "interface.json").write_text(json.dumps({"format": 1, "panes": panes}), encoding="utf-8")
-
-
 class Program:
     """A program with a window, in a process of its own, which reports what it shows."""
 
-    def __init__(self, screen: Screen, folder: Path, command: Sequence[str], cwd: Path) -> None:
+    def __init__(
+        self, screen: Screen, folder: Path, command: Sequence[str], cwd: Path, *, code: bool = False
+    ) -> None:
+        """Start it; ``code``: the code pane is open, where the window is wide enough."""
         self.screen = screen
+        interface = folder / "state" / NAME / "interface.json"
+        if not interface.exists():
+            interface.parent.mkdir(parents=True, exist_ok=True)
+            # Beside the panel is the picture alone; what the panel begins with leaves room for what follows.
+            panes = {"code": float(code), "strip": 0.0, "terrain": 0.0}
+            interface.write_text(json.dumps({"format": FORMAT, "panes": panes}), encoding="utf-8")
         self.status = folder / "status.jsonl"
         gone = ("WAYLAND_DISPLAY", "XDG_SESSION_TYPE")
         environment = {k: v for k, v in os.environ.items() if k not in gone}
         # What it remembers is a test's own, and gone with it.
         environment |= {"XDG_STATE_HOME": str(folder / "state"), "XDG_CACHE_HOME": str(folder / "cache")}
-        # The group Terrain is folded, so that there is room in small windows for what follows it.
-        preferences = state_folder("linux", environment) / "interface.json"
-        if not preferences.exists():
-            preferences.parent.mkdir(parents=True, exist_ok=True)
-            preferences.write_text(json.dumps({"format": 1, "panes": {"terrain": 0.0}}), encoding="utf-8")
         environment |= {"DISPLAY": screen.display, "PLAYGROUND_STATUS": str(self.status)}
         places = filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")])
         environment["PYTHONPATH"] = os.pathsep.join(places)

@@ -23,7 +23,7 @@ float kernel(ivec2 texel) {
 
 def window_on(screen: Screen, folder: Path) -> Program:
     command = [sys.executable, "-c", script(SCREEN), str(folder / "sketch.toml")]
-    return Program(screen, folder, command, folder)
+    return Program(screen, folder, command, folder, code=True)
 
 
 def test_a_kernel_is_typed_broken_and_repaired(screen: Screen, tmp_path: Path) -> None:

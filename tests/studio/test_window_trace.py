@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from .saves import save_in_place
-from .screen import HILLS, LIMIT, ON_LINUX, Program, Screen, close_panes
+from .screen import HILLS, LIMIT, ON_LINUX, Program, Screen
 
 pytestmark = [*ON_LINUX, pytest.mark.slow]
 SCREEN = 1280, 720
@@ -67,7 +67,6 @@ class Traced(Program):
         self.folder.mkdir()
         (self.folder / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
         (self.folder / "sketch.toml").write_text(HILLS, encoding="utf-8")
-        close_panes(folder)
         super().__init__(screen, folder, [sys.executable, "-c", RUN, str(self.folder)], folder)
         drawn = self.wait(lambda now: now["draws"] > 0)["draws"]
         screen.do("key", "g")  # the strip is closed: the map has its room
