@@ -201,7 +201,7 @@ def _print_trace(trace: Trace, loop: str) -> None:
     tables = _loops(trace, loop) if loop else []
     print(heading(trace))
     if bad := trace.first_not_finite():
-        text = f"⚠ first NaN or infinity: {event_text(bad)}, {shown(bad.path)}:{bad.line}"
+        text = f"! first NaN or infinity: {event_text(bad)}, {shown(bad.path)}:{bad.line}"
         print(painted(text, "1;31", sys.stdout))
     for path in dict.fromkeys([*trace.files, *(event.path for event in trace.events)]):
         if lines := annotated(trace, path):
@@ -235,7 +235,7 @@ def _rows(lines: Sequence[AnnotatedLine]) -> Iterator[str]:
         if line.number > before + 1:
             yield painted(f"{'⋮':>{margin}}", "2", sys.stdout)
         before = line.number
-        mark = " " if line.is_finite else "⚠"
+        mark = " " if line.is_finite else "!"
         head = f"{mark} {line.number:>{margin - 3}} "
         text = f"{code if len(code) <= room else code[: room - 1] + '…':{room}}"
         notes = textwrap.wrap(line.note, rest, subsequent_indent="  ", break_on_hyphens=False) or [""]
@@ -303,7 +303,7 @@ def _print_pair(events: Sequence[Event | None], traces: Sequence[Trace]) -> None
         inside = f", iteration {', '.join(map(str, event.iterations))}" if event.iterations else ""
         call = trace.calls[event.call].function
         colour = "36" if event.is_finite else "1;31"
-        text = painted(event_text(event) + ("" if event.is_finite else " ⚠"), colour, sys.stdout)
+        text = painted(event_text(event) + ("" if event.is_finite else " !"), colour, sys.stdout)
         print(f"{number}: {shown(event.path)}:{event.line}, in {call}{inside}: {text}")
         print(painted(f"     {code}", "2", sys.stdout))
 

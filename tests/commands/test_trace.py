@@ -75,13 +75,13 @@ def test_numbers_that_are_not_finite_are_marked(
 ) -> None:
     lines = run(capsys, "9", "3").splitlines()
     assert re.search(r"NaN.*bad.*roots\.glsl:12", lines[1])
-    assert [line.split()[:2] for line in lines if line.startswith("⚠ ")][1:] == [["⚠", "12"], ["⚠", "13"]]
+    assert [line.split()[:2] for line in lines if line.startswith("! ")][1:] == [["!", "12"], ["!", "13"]]
     monkeypatch.setenv("COLUMNS", "72")
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.delenv("NO_COLOR", raising=False)
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
     red = [line for line in run(capsys, "9", "3").splitlines() if "\033[1;31m" in line]
-    assert len(red) == 3 and all("⚠" in line for line in red)
+    assert len(red) == 3 and all("!" in line for line in red)
     monkeypatch.setenv("NO_COLOR", "1")
     plain = run(capsys, "9", "3").splitlines()
     assert not any("\033[" in line for line in plain)

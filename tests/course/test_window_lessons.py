@@ -19,7 +19,7 @@ from pathlib import Path
 from playground.course import library
 library.TEXTS = Path(sys.argv[1])
 from playground.studio.app import run
-sys.exit(run(sys.argv[2], size=(1000, 700), request={"lesson": "halving"}, time_limit=300))
+sys.exit(run(sys.argv[2], size=(1000, 700), request={"lesson": sys.argv[3]}, time_limit=300))
 """
 pytestmark = ON_LINUX
 
@@ -27,8 +27,8 @@ pytestmark = ON_LINUX
 SCREEN = 1000, 700  # [pixels]
 
 
-def opened(screen: Screen, folder: Path) -> Program:
-    command = [sys.executable, "-c", RUN, str(folder / "texts"), str(folder)]
+def opened(screen: Screen, folder: Path, lesson: str = "") -> Program:
+    command = [sys.executable, "-c", RUN, str(folder / "texts"), str(folder), lesson]
     made = Program(screen, folder, command, folder)
     made.wait(lambda now: now["draws"] > 0)
     screen.do("mousemove", 800, 300)
@@ -46,7 +46,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.slow
 def test_lesson_beside_sketch_takes_view_on_page_turn(screen: Screen, folder: Path) -> None:
     progress = folder / "state" / "terrain-shader-playground" / "lessons.json"
-    window = opened(screen, folder)
+    window = opened(screen, folder, "halving")
     try:
         own = window.now()["picture"]
         screen.do("key", "Next")

@@ -301,7 +301,7 @@ def test_it_opens_its_window(command: str, folder: Path, tmp_path: Path):
         if arguments(command)[:1] == ["fly"]:
             wait_for_a_picture(program)
         else:
-            program.wait(lambda now: now["draws"] > 0 and not now["error"])
+            program.wait(lambda now: (now["draws"] or now["layers"] == ["start page"]) and not now["error"])
     finally:
         program.close()
         screen.close()

@@ -197,7 +197,8 @@ def test_each_shipped_pass_takes_a_probe_and_stays_as_it_was(any_engine: Engine,
         changed, probe, _ = probed(sketch, Probe(leaf.path, line.file, line.number, "1.0"))
         np.testing.assert_array_equal(any_engine.read(changed, ref, size=(48, 32)), before, leaf.path)
         values = any_engine.read(changed, f"{leaf.path}:{probe}", size=(48, 32))
-        assert (values[..., 0] == 1.0).all(), leaf.path
+        runs_never = not before.any() and not values.any()  # as the passes of a glow of strength 0
+        assert runs_never or (values[..., 0] == 1.0).all(), leaf.path
 
 
 @pytest.mark.parametrize(

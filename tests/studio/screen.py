@@ -95,15 +95,22 @@ class Program:
     """A program with a window, in a process of its own, which reports what it shows."""
 
     def __init__(
-        self, screen: Screen, folder: Path, command: Sequence[str], cwd: Path, *, code: bool = False
+        self,
+        screen: Screen,
+        folder: Path,
+        command: Sequence[str],
+        cwd: Path,
+        *,
+        code: bool = False,
+        strip: bool = False,
     ) -> None:
-        """Start it; ``code``: the code pane is open, where the window is wide enough."""
+        """Start it; ``code``: with the code pane, ``strip``: with the strip below the picture."""
         self.screen = screen
         interface = folder / "state" / NAME / "interface.json"
         if not interface.exists():
             interface.parent.mkdir(parents=True, exist_ok=True)
             # Beside the panel is the picture alone; what the panel begins with leaves room for what follows.
-            panes = {"code": float(code), "strip": 0.0, "terrain": 0.0}
+            panes = {"code": float(code), "strip": float(strip), "terrain": 0.0}
             interface.write_text(json.dumps({"format": FORMAT, "panes": panes}), encoding="utf-8")
         self.status = folder / "status.jsonl"
         gone = ("WAYLAND_DISPLAY", "XDG_SESSION_TYPE")

@@ -27,7 +27,7 @@ from .panel_desk import Bare
 from .screen import HILLS
 
 FILES = {"sketch.toml": HILLS, "terrain.glsl": "float kernel(vec2 p) { return 0.5; }\n"}
-LOSS = 6.0  # mean difference that JPEG may make, of 255
+LOSS = 10.0  # mean difference that JPEG may make, of 255: most in a net of lines
 
 
 def test_every_shipped_sketch_has_a_card_with_its_own_words() -> None:

@@ -51,7 +51,9 @@ class Passes(Program):
         self.file.write_text(HILLS, encoding="utf-8")
         (self.file.parent / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
         self.places = folder / "places.json"
-        super().__init__(screen, folder, [sys.executable, "-c", RUN, str(self.file.parent)], folder)
+        super().__init__(
+            screen, folder, [sys.executable, "-c", RUN, str(self.file.parent)], folder, strip=True
+        )
         self.wait(lambda now: now["draws"] > 0)
 
     def text(self) -> str:

@@ -68,9 +68,7 @@ class Traced(Program):
         (self.folder / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
         (self.folder / "sketch.toml").write_text(HILLS, encoding="utf-8")
         super().__init__(screen, folder, [sys.executable, "-c", RUN, str(self.folder)], folder)
-        drawn = self.wait(lambda now: now["draws"] > 0)["draws"]
-        screen.do("key", "g")  # the strip is closed: the map has its room
-        self.wait(lambda now: now["draws"] > drawn)
+        self.wait(lambda now: now["draws"] > 0)
 
     def traced(self, condition: Any = lambda trace: True) -> dict[str, Any]:
         """Wait until there is a trace of which a condition holds."""

@@ -56,7 +56,9 @@ class Kept(Program):
         self.kernel.write_text(TERRAIN, encoding="utf-8")
         (self.folder / "sketch.toml").write_text(HILLS, encoding="utf-8")
         super().__init__(screen, folder, [sys.executable, "-c", RUN, str(self.folder)], folder)
-        self.wait(lambda now: len(now["versions"]) == 1)
+        drawn = self.wait(lambda now: len(now["versions"]) == 1)["draws"]
+        screen.do("key", "v")
+        self.wait(lambda now: now["draws"] > drawn)  # the strip takes room of the picture
 
     def places(self) -> dict[str, tuple[int, int]]:
         """Return where everything is, by its label."""

@@ -83,7 +83,7 @@ def trace_html(trace: Trace) -> str:
         "div",
         tag("style", Markup(_STYLE)),
         tag("p", heading(trace)),
-        tag("p", f"⚠ first NaN or infinity: {event_text(bad)}, line {bad.line}", class_="bad")
+        tag("p", f"! first NaN or infinity: {event_text(bad)}, line {bad.line}", class_="bad")
         if bad
         else None,
         *calls,
@@ -113,7 +113,7 @@ def _lines(trace: Trace, call: Call, rest: _Rest) -> Markup:
     for line in annotated(trace, call.path, call):
         loop = heads.get(line.number)
         values = joined(_slider(loop) if loop else None, *_values(line.events, rest))
-        mark = "" if line.is_finite else "⚠ "
+        mark = "" if line.is_finite else "! "
         cells = tag("td", f"{mark}{line.number}", class_="number"), tag("td", tag("pre", line.code))
         rows.append(tag("tr", *cells, tag("td", values)))
     return tag("table", *rows)

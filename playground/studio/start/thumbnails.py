@@ -106,7 +106,7 @@ def make_atlas() -> None:
     atlas = Image.new("RGB", (_ACROSS * CELL[0], high))
     for number, picture in enumerate(pictures):
         atlas.paste(picture, (number % _ACROSS * CELL[0], number // _ACROSS * CELL[1]))
-    atlas.save(_ATLAS, quality=_QUALITY, optimize=True)
+    atlas.save(_ATLAS, quality=_QUALITY, subsampling=0, optimize=True)
     lines = ",\n".join(json.dumps(row, ensure_ascii=False) for row in rows)
     _TABLE.write_text(f'{{"sketches": [\n{lines}\n]}}\n', encoding="utf-8")
 

@@ -276,7 +276,7 @@ def test_a_click_shows_values_beside_the_code(drawn: Engine, tmp_path: Path) -> 
         assert abs(column - SIZE[0] // 2) <= 1 and abs(row - SIZE[1] // 2) <= 1
         assert "bit for bit" in browser.run("return document.querySelector('.trace-said').textContent")
         lines = browser.run(LINES)
-        assert lines["float root = sqrt(-1.0 - float(texel.y)); // not finite"] == "root = NaN ⚠"
+        assert lines["float root = sqrt(-1.0 - float(texel.y)); // not finite"] == "root = NaN !"
         assert lines["bool is_odd = (texel.x & 1) == 1;"] == f"is_odd = {'true' if column % 2 else 'false'}"
         browser.run(
             "const calls = document.querySelector('.trace select'); calls.value = '1'; calls.onchange()"

@@ -1,4 +1,4 @@
-/* sources ccf7f54288f6af77 */
+/* sources 4cf9403ed8aebe56 */
 /* Contains CodeMirror.
 MIT License
 

@@ -71,7 +71,7 @@ export function createTraceView({ words, textOfFile, chosen }) {
     const text = textOf(value, place.type), sound = isFinite(value);
     const what = { return: "→", condition: "?" }[place.kind] ?? `${place.name} =`;
     if (sound) return make("span", {}, `${what} ${text}`);
-    return make("span", { className: "not-finite", title: words.traceNotFinite }, `${what} ${text} ⚠`);
+    return make("span", { className: "not-finite", title: words.traceNotFinite }, `${what} ${text} !`);
   }
 
   /** @param {Call} call */
