@@ -16,11 +16,11 @@ from playground.sketch.techniques import name_of
 LARGEST = 10.0
 """How many times higher than it is a terrain can be shown."""
 
-_RULES = GLSL / "exaggerated.toml"
+_RULES = Path(__file__).with_suffix(".toml")
 
 
 class _Rules(NamedTuple):
-    """What ``glsl/exaggerated.toml`` says: beginnings of kernels' names, and parameters."""
+    """What ``exaggerated.toml`` says: beginnings of kernels' names, and parameters."""
 
     shows: tuple[str, ...]
     keeps_metres: tuple[str, ...]
