@@ -111,7 +111,12 @@ class Program:
             interface.parent.mkdir(parents=True, exist_ok=True)
             # Beside the panel is the picture alone; what the panel begins with leaves room for what follows.
             panes = {"code": float(code), "strip": float(strip), "terrain": 0.0}
-            interface.write_text(json.dumps({"format": FORMAT, "panes": panes}), encoding="utf-8")
+            chosen = {
+                "format": FORMAT,
+                "panes": panes,
+                "shows_readout": False,
+            }  # which differs from run to run
+            interface.write_text(json.dumps(chosen), encoding="utf-8")
         self.status = folder / "status.jsonl"
         gone = ("WAYLAND_DISPLAY", "XDG_SESSION_TYPE")
         environment = {k: v for k, v in os.environ.items() if k not in gone}

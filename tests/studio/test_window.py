@@ -659,7 +659,7 @@ HALVES = """void mainImage(out vec4 c, in vec2 p) {
 }
 """
 PASTED = "// Half red\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(0.5, 0.0, 0.0, 1.0); }\n"
-CHOOSER, BLACK = (200, 313), (150, 342)  # of the first channel, at scale 1
+CHOOSER, BLACK = (200, 348), (150, 377)  # of the first channel, at scale 1
 LATER = 412, 341  # the second channel in the menu of a drop
 LEFT, RIGHT = (420, 500), (420, 760)  # row, column of a pixel in each half
 HOLDS = """
