@@ -17,7 +17,6 @@ from typing import NamedTuple
 from playground.engine.plan_warnings import own_kernels
 from playground.errors import Diagnostic, PlaygroundError
 from playground.files import read_regular
-from playground.memo import TEXTS
 from playground.paths import GLSL, shown
 from playground.shader.expressions import names_in
 from playground.shader.parameter import write
@@ -39,9 +38,7 @@ from playground.shader.syntax.nodes import (
     While,
     children,
 )
-from playground.shader.syntax.parser import parse
-from playground.shader.syntax.symbols import Symbol, Symbols, readings
-from playground.shader.syntax.symbols import resolve as resolve_names
+from playground.shader.syntax.symbols import Symbol, Symbols, readings, symbols_of
 from playground.shader.syntax.tokens import tokenize
 from playground.sketch.assign import apply, effective_values, resolve
 from playground.sketch.model import (
@@ -162,7 +159,7 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
     names = [*(p.name for p in kernel.parameters), *(i.name for i in kernel.inputs)]
     if not names:
         return ()
-    symbols = _symbols(kernel.source.code)
+    symbols = symbols_of(kernel.source.code, all_branches=True)
     read = _read_words(kernel, symbols)
     diagnostics = []
     for name in names:
@@ -202,7 +199,7 @@ def unused_locals(kernel: Kernel) -> tuple[Diagnostic, ...]:
     if isinstance(kernel, CpuSource | PlainShader):
         return ()
     own = not Path(kernel.path).is_relative_to(GLSL)
-    symbols = _symbols(kernel.source.code)
+    symbols = symbols_of(kernel.source.code, all_branches=True)
     diagnostics = []
     for symbol in unused(symbols) if not symbols.tree.errors else ():
         line = kernel.source.lines[symbols.tree.line(symbol.token)]
@@ -213,11 +210,6 @@ def unused_locals(kernel: Kernel) -> tuple[Diagnostic, ...]:
 
 
 _OUTSIDE = str.maketrans('"#', "  ")
-
-
-@TEXTS.cached(weight=256)  # nodes and tokens are many
-def _symbols(code: str) -> Symbols:
-    return resolve_names(parse(code, all_branches=True))
 
 
 def _at_symbol(kernel: Kernel, symbols: Symbols, symbol: Symbol, message: str) -> Diagnostic:

@@ -39,7 +39,6 @@ class Preferences:
     language: str = ""  # "": the system's
     is_in_feet: bool = False  # lengths of the terrain, else in metres
     panes: dict[str, float] = field(default_factory=dict)  # what ``Panes`` remembers, by name
-    used_keys: tuple[str, ...] = ()  # of those that the window hints at
     shows_readout: bool = True  # frames a second in the picture's corner
     file: Path | None = None  # None: nowhere
 
@@ -62,7 +61,7 @@ class Preferences:
             write_file(self.file, json.dumps({"format": FORMAT, **remembered}))
 
 
-_REMEMBERED = ("size", "is_light", "language", "is_in_feet", "panes", "used_keys", "shows_readout")
+_REMEMBERED = ("size", "is_light", "language", "is_in_feet", "panes", "shows_readout")
 
 
 def remembered_preferences(folder: Path | None = None) -> Preferences:
@@ -88,9 +87,6 @@ def remembered_preferences(folder: Path | None = None) -> Preferences:
     panes = table.get("panes")
     if isinstance(panes, dict):
         preferences.panes = {name: float(v) for name, v in panes.items() if isinstance(v, int | float)}
-    used = table.get("used_keys")
-    if isinstance(used, list) and all(isinstance(key, str) for key in used):
-        preferences.used_keys = tuple(used)
     return preferences
 
 
@@ -131,10 +127,6 @@ class Panes:
         """Open the strip at a tab, or close it."""
         self.remember("strip", float(shown))
         self.selects = tab or self.selects
-
-    def as_delivered(self) -> None:
-        """Forget what was opened, closed and dragged."""
-        self.preferences.choose(panes={})
 
     def fraction(self, name: str, otherwise: float) -> float:
         """Return the part of the window that a pane takes."""

@@ -32,7 +32,7 @@ float kernel(ivec2 texel) { return float(texel.x) / float(size.x - 1); }
 @pytest.fixture
 def bare(bare: Bare) -> Bare:
     """Give a panel whose group Terrain is open, as it is delivered."""
-    bare.bench.panes.as_delivered()
+    bare.bench.interface.preferences.choose(panes={})
     bare.run_frames(2)
     return bare
 

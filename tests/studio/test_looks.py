@@ -54,9 +54,9 @@ def test_what_is_chosen_is_remembered(tmp_path: Path) -> None:
     again = remembered_preferences(tmp_path)
     assert (again.is_light, again.language, again.panes) == (True, "fr", {"code": 0.0})
     file = tmp_path / "interface.json"
-    file.write_text(json.dumps({"format": 1, "size": 1.25, "is_light": 3, "panes": [], "used_keys": [1]}))
+    file.write_text(json.dumps({"format": 1, "size": 1.25, "is_light": 3, "panes": []}))
     again = remembered_preferences(tmp_path)
-    assert (again.size, again.is_light, again.panes, again.used_keys) == (1.25, False, {}, ())
+    assert (again.size, again.is_light, again.panes) == (1.25, False, {})
 
 
 TABS = [Tab("one", "One", lambda look: None)]
@@ -82,6 +82,6 @@ def test_panes_share_the_window(open_bare: OpenBare, folder: Path, size: tuple[i
     panes.show_strip(shown=False)
     places = layout.place(300.0, TABS, bare.theme)
     assert places.picture == (300.0, 0.0, wide, high) and places.code is None and places.strip is None
-    panes.as_delivered()
+    preferences.choose(panes={})
     for name in ("code", "strip"):
         assert panes.is_open(name, narrow=False) and not panes.is_open(name, narrow=True)

@@ -91,10 +91,6 @@ class Influence:
             rest += new
         return [node for node, own in self._statements if not facts.isdisjoint(own)]
 
-    def all_statements(self) -> list[Node]:
-        """Return every statement of the text, as ``statements`` has them."""
-        return [node for node, _ in self._statements]
-
     # ── statements ───────────────────────────────────────────────────────────
 
     def _visit(self, node: Node | None, around: frozenset[Hashable]) -> None:

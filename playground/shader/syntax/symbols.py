@@ -85,17 +85,6 @@ class Symbols:
         """Return the functions, prototypes too."""
         return [symbol for symbol in self.symbols if symbol.kind == "function"]
 
-    def references_to(self, symbol: Symbol) -> list[Reference]:
-        """Return where a symbol is named; of a function also its prototypes and what may mean it."""
-        wanted = {symbol}
-        if symbol.kind == "function":
-            wanted |= {one for one in self.functions() if has_same_signature(one.node, symbol.node)}
-        return [
-            one
-            for one in self.references
-            if one.symbol is not None and (one.symbol in wanted or not wanted.isdisjoint(one.overloads))
-        ]
-
 
 def has_same_signature(one: Node, other: Node) -> bool:
     """Return whether two functions have the same name and the same types of parameters."""

@@ -20,6 +20,7 @@ from imgui_bundle import imgui_color_text_edit as text_edit
 
 from playground.errors import Diagnostic
 from playground.paths import shown, without_part
+from playground.shader.syntax.tokens import without_comments
 from playground.studio import theme
 from playground.studio.code.open_files import Editing, OpenFiles, library_files
 from playground.studio.draw import QUIET, Area, button, buttons, ctrl_held, inked, styled, window
@@ -37,13 +38,12 @@ if TYPE_CHECKING:
 
 DEFAULT_STEP = " " * 4
 _PAIRS = {"}": "{", "]": "[", ")": "("}
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _BLANK = re.compile(r"[ \t]*")
 
 
 def step_of(text: str) -> str:
     """Return one step of indentation: that of most lines after an open brace, else of most lines."""
-    lines = [line for line in _COMMENT.sub(" ", text).split("\n") if line.strip()]
+    lines = [line for line in without_comments(text).split("\n") if line.strip()]
     indents = [_indent_of(line) for line in lines]
     if sum(indent.startswith("\t") for indent in indents) * 2 > sum(map(bool, indents)):
         return "\t"
@@ -64,7 +64,7 @@ def new_line(before: str, after: str, step: str) -> tuple[str, str]:
     ``before`` and ``after`` are the line to the left and to the right of the cursor.
     """
     indent = _indent_of(before)
-    code = _COMMENT.sub(" ", before).rstrip()
+    code = without_comments(before).rstrip()
     if not code.endswith(tuple(_PAIRS.values())):
         return f"\n{indent}", ""
     closes = _PAIRS.get(after.strip()[:1]) == code[-1]
@@ -76,7 +76,7 @@ def closing_indent(before: str, bracket: str) -> str | None:
 
     ``before`` is the text up to the cursor. None where the bracket begins no line, or closes nothing.
     """
-    code = _COMMENT.sub(lambda comment: re.sub(r"[^\n]", " ", comment[0]), before)
+    code = without_comments(before)
     line = before.rpartition("\n")[2]
     if bracket not in _PAIRS or line.strip():
         return None

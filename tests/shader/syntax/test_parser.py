@@ -23,7 +23,7 @@ from playground.shader.syntax.nodes import (
     walk,
 )
 from playground.shader.syntax.parser import Tree, parse
-from playground.shader.syntax.symbols import resolve
+from playground.shader.syntax.symbols import Reference, Symbol, Symbols, resolve
 from playground.shader.syntax.tokens import tokenize
 
 from ...loading import stages
@@ -33,6 +33,11 @@ FILES = sorted(path for path in GLSL.rglob("*") if path.suffix in (".glsl", ".fr
 
 def functions(tree: Tree) -> list[str]:
     return [node.name for node in tree.declarations if isinstance(node, Function) and node.body is not None]
+
+
+def references_to(symbols: Symbols, symbol: Symbol) -> list[Reference]:
+    """Return where a symbol is named, of a function also where a call may mean it."""
+    return [one for one in symbols.references if one.symbol is symbol or symbol in one.overloads]
 
 
 def trees(text: str) -> list[Tree]:
@@ -195,7 +200,7 @@ def test_a_token_of_a_macro_has_the_place_of_its_call() -> None:
     tree = parse(text)
     symbols = resolve(tree)
     [tail] = [one for one in symbols.symbols if one.name == "tail"]
-    places = [tree.tokens[one.token] for one in symbols.references_to(tail)]
+    places = [tree.tokens[one.token] for one in references_to(symbols, tail)]
     assert [text[one.spelled :][:4] for one in places] == ["tail", "tail"]
     assert [text[one.start : one.end] for one in places] == ["tail", "SUM(1.0)"]
     assert tree.line(places[1].end and tree.tokens.index(places[1])) == 2
@@ -203,7 +208,7 @@ def test_a_token_of_a_macro_has_the_place_of_its_call() -> None:
 
 def test_names_in_numbers_are_no_names() -> None:
     symbols = resolve(parse("float g(float e, float f) { return 1e-3 * e + 2.0f * f + 1e+5f + 0xe; }"))
-    uses = {one.name: len(symbols.references_to(one)) for one in symbols.symbols}
+    uses = {one.name: len(references_to(symbols, one)) for one in symbols.symbols}
     assert uses == {"g": 1, "e": 2, "f": 2}
     literals = [n.text for n in walk(*symbols.tree.declarations) if isinstance(n, Literal)]
     assert literals == ["1e-3", "2.0f", "1e+5f", "0xe"]
@@ -356,4 +361,4 @@ def test_calls_know_the_functions_that_they_may_mean() -> None:
     assert counts["f(1.0, 2.0)"] == 1
     assert counts["vec2(1.0)"] == 0
     first = symbols.functions()[0]
-    assert len(symbols.references_to(first)) == 3
+    assert len(references_to(symbols, first)) == 3
