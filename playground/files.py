@@ -168,6 +168,11 @@ def make_folder(path: Path) -> Path:
     """Make a folder, with its parents, where there is none; raise ``DataError`` where it cannot be made."""
     try:
         path.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError) as error:
+        taken = next(one for one in (path, *path.parents) if os.path.lexists(one))
+        raise DataError(
+            f"is a {'link to nothing' if taken.is_symlink() else 'file'}; expected a folder", file=taken
+        ) from error
     except OSError as error:
         raise DataError(f"no folder can be made: {reason(error)}", file=path) from error
     return path

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from playground.files import partial_file, remove_left_over, replacing
+from playground.errors import DataError
+from playground.files import make_folder, partial_file, remove_left_over, replacing
 
 ROOT = Path(__file__).resolve().parent.parent
 PLAIN = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(0.5); }\n"
@@ -35,6 +36,16 @@ def test_a_file_is_there_while_it_is_written_and_gone_after(tmp_path: Path):
     with replacing(tmp_path / "a.png") as handle:
         handle.write(b"new")
     assert names(tmp_path) == ["a.png"] and (tmp_path / "a.png").read_bytes() == b"new"
+
+
+def test_a_folder_is_refused_where_a_file_is(tmp_path: Path):
+    (tmp_path / "file").write_text("x")
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    for name, refused in [("file", "file"), ("file/a/b", "file"), ("link", "link"), ("link/a", "link")]:
+        with pytest.raises(DataError, match=r"; expected a folder$") as caught:
+            make_folder(tmp_path / name)
+        assert caught.value.diagnostics[0].file == str(tmp_path / refused)
+    assert make_folder(tmp_path / "a" / "b").is_dir() and make_folder(tmp_path / "a") == tmp_path / "a"
 
 
 def test_what_a_dead_process_left_is_removed_and_nothing_else(tmp_path: Path):
