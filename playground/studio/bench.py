@@ -91,9 +91,7 @@ class Workbench:
 
     def toggle_passes(self) -> None:
         """Open the strip at the passes, which get the keys, or close it."""
-        graph = self.inspection.graph
-        self.panes.show_strip("passes", shown=not graph.on)
-        graph.gets_keys = not graph.on
+        self.inspection.graph.gets_keys = self.panes.toggle_strip("passes")
 
     def follow_files(self) -> None:
         """Have the tabs of the code pane be those of the sketch that is shown."""

@@ -106,6 +106,7 @@ class Panes:
 
     preferences: Preferences
     selects: str = ""  # the tab that the strip is to show
+    tab: str = ""  # the one that it showed last
     has_code: bool = False  # there is something to show in the code pane
     is_narrow: bool = False  # the window: the code takes the picture's place
 
@@ -127,6 +128,12 @@ class Panes:
         """Open the strip at a tab, or close it."""
         self.remember("strip", float(shown))
         self.selects = tab or self.selects
+
+    def toggle_strip(self, tab: str) -> bool:
+        """Open the strip at a tab, or close it where it shows that one; return whether it is open."""
+        opens = self.tab != tab or not self.is_open("strip", narrow=self.is_narrow)
+        self.show_strip(tab, shown=opens)
+        return opens
 
     def fraction(self, name: str, otherwise: float) -> float:
         """Return the part of the window that a pane takes."""

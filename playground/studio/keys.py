@@ -31,7 +31,6 @@ from playground.studio.draw import (
 )
 from playground.studio.interface import Interface, resize
 from playground.studio.paint.brush import TOOLS, Tool
-from playground.studio.panes import NARROW
 from playground.studio.theme import Theme
 
 
@@ -163,7 +162,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.f4, "F4", "frames a second in the corner, or no longer", lambda b: _toggle_readout(b)),
     Key(_K.f6, "F6, Shift+F6", "look at the version before, after", lambda b: _look(b)),
     Key(_K.f6, "Ctrl+F6", "go back to the version that is looked at", lambda b: _go_back(b), ctrl=True),
-    Key(_K.v, "V", "the versions, or no longer", lambda b: _toggle_versions(b)),
+    Key(_K.v, "V", "the versions, or no longer", lambda b: b.panes.toggle_strip("versions")),
     Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
     Key(_K.e, "E, Shift+E", _EDIT, lambda b: b.files.open_current(b.problems, here=not _shift_held())),
     Key(_K.e, "Ctrl+E", "the code pane, or no longer", lambda b: _toggle_code(b), ctrl=True),
@@ -189,12 +188,6 @@ def _look(bench: Workbench) -> None:
 def _go_back(bench: Workbench) -> None:
     if bench.versions.looked is not None:
         bench.versions.go_back(bench.versions.looked)
-
-
-def _toggle_versions(bench: Workbench) -> None:
-    narrow = imgui.get_main_viewport().size.x < NARROW * imgui.get_style().font_scale_dpi
-    shown = bench.panes.is_open("strip", narrow=narrow)
-    bench.panes.show_strip("versions", shown=not shown)
 
 
 def _toggle_readout(bench: Workbench) -> None:

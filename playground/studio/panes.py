@@ -90,6 +90,7 @@ class PaneLayout:
             badge = tab.badge()
             title = f"{tr(tab.title)} {badge}".rstrip()
             if imgui.begin_tab_item(f"{title}###{tab.name}", None, flags)[0]:
+                self._panes.tab = tab.name
                 tab.draw(look)
                 imgui.end_tab_item()
         self._panes.selects = ""
