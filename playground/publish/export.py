@@ -35,6 +35,7 @@ from playground.publish.export_formats import (
     PICTURES,
     RAW,
     SHADERS,
+    TEXTURED,
     ExportOptions,
     bits_for,
     check,
@@ -44,7 +45,7 @@ from playground.publish.export_formats import (
     sidecar_paths,
     whole_numbers,
 )
-from playground.publish.mesh import encode_glb, encode_mtl, encode_obj, sampled, terrain_mesh
+from playground.publish.mesh import encode_glb, encode_mtl, encode_obj, encode_stl, sampled, terrain_mesh
 from playground.publish.shader_export.export import ShaderFiles, check_es, shader_files
 from playground.publish.texture_encoding import (
     SOFTWARE,
@@ -114,8 +115,8 @@ def export(
 
     ``.png``, ``.r16``, ``.r32``, ``.tif``, ``.exr`` and ``.npy`` hold the heights, in metres, or
     the ``texture`` named; ``.webp`` and ``.jpg`` colours; ``.glb`` and ``.obj`` the terrain with its
-    texture; ``.fs``, ``.frag``, ``.json`` and ``.glsl`` the picture, or a texture, as a shader; ``.html`` is
-    a web page in which the whole sketch runs. Rows come from the north. The other arguments are those
+    texture, ``.stl`` without; ``.fs``, ``.frag``, ``.json`` and ``.glsl`` the picture, or a texture, as a
+    shader; ``.html`` is a web page in which the whole sketch runs. Rows come from the north. The other arguments are those
     of ``ExportOptions``; ``time``, in seconds, and ``steps`` are as in ``Engine.render``. A file of that
     name is replaced, whole or not at all. Without an ``engine`` one is opened.
 
@@ -211,7 +212,9 @@ def _prepare_shader(
 
 def _prepare_mesh(sketch: Sketch, path: Path, options: ExportOptions, plan: Plan) -> ExportJob:
     height, texture, kind = height_of(plan), options.texture, options.kind or COLOUR
-    if texture:
+    if path.suffix.lower() not in TEXTURED:
+        texture = ""
+    elif texture:
         plan.flat.ref(texture, sketch.name)
         kind = options.kind or kind_of(plan, texture)
         kind = NUMBERS if kind == HEIGHT else kind  # 0 to 1 may be seen; metres would be all white
@@ -311,12 +314,14 @@ def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     extent = job.plan.terrain.extent
     assert extent is not None  # a plan's terrain is known
     with naming(job.path):
-        mesh = terrain_mesh(sampled(heights, size), extent, texels or (2, 2))
+        mesh = terrain_mesh(_exaggerated(job, sampled(heights, size)), extent, texels or (2, 2))
     name = job.sketch.name
     sidecars: list[Path] = []
     if job.ending == ".glb":
         glb = encode_glb(mesh, name, texture=baked, unlit=bool(job.light), software=SOFTWARE)
         files = {job.path: glb}
+    elif job.ending == ".stl":
+        files = {job.path: encode_stl(mesh, SOFTWARE)}
     else:
         library, picture = sidecar_paths(job.path)
         sidecars = [library, picture] if baked else [library]
@@ -329,14 +334,23 @@ def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     parts = [
         f"{size[0]} x {size[1]} vertices, {len(mesh.triangles)} triangles",
         f"{extent[0]:.7g} x {extent[1]:.7g} m, {low:.5g} to {high:.5g} m high",
-        f"texture {texels[0]} x {texels[1]}" if texels else _NO_TEXTURE,
+        f"texture {texels[0]} x {texels[1]}" if texels else _NO_TEXTURE if job.ending in TEXTURED else "",
+        f"{job.options.exaggeration:g} times as high as it is" if job.options.exaggeration else "",
     ]
     notes = [warning]
     if job.options.grid > max(size):
         notes.append(
             f"the terrain has {max(size)} texels on its longer side, so the mesh has no more vertices"
         )
-    return Exported(job.path, "; ".join(parts), tuple(sidecars), tuple(filter(None, notes)))
+    summary = "; ".join(filter(None, parts))
+    return Exported(job.path, summary, tuple(sidecars), tuple(filter(None, notes)))
+
+
+def _exaggerated(job: ExportJob, heights: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return heights [m] as they are asked for: what is at height 0 of the terrain stays where it is."""
+    base, factor = job.plan.terrain.base_elevation, job.options.exaggeration or 1.0
+    assert base is not None  # a plan's terrain is known
+    return heights if factor == 1.0 else ((heights - base) * factor + base).astype(np.float32)
 
 
 def _texture(engine: Engine, job: ExportJob) -> tuple[bytes, tuple[int, int] | None, str]:

@@ -42,8 +42,13 @@ RAW = (".r16", ".raw", ".r32")
 PICTURES = (".webp", ".jpg", ".jpeg")
 """Colours and nothing else."""
 
-MESHES: dict[str, int] = {".glb": 2049, ".obj": 1025}
+MESHES: dict[str, int] = {".glb": 2049, ".obj": 1025, ".stl": 2049}
 """Ending → vertices that the longer side of a mesh may have; OBJ is text, six times as long."""
+
+TEXTURED = (".glb", ".obj")
+"""Meshes with a texture; an STL is a shape and nothing else."""
+
+_MESH_LIST = f"{', '.join(tuple(MESHES)[:-1])} or {tuple(MESHES)[-1]}"
 
 DEFAULT_GRID = 513
 """Vertices of the longer side unless another number is given."""
@@ -57,8 +62,8 @@ PAGES = (".html",)
 ENDINGS = (*VALUES, *MESHES, *SHADERS, *PAGES)
 
 OTHERS = {
-    f"a mesh is {' or '.join(MESHES)}": (
-        ".3ds .3mf .abc .blend .c4d .dae .fbx .iges .lwo .ma .max .mb .off .ply .skp .step .stl .stp .usd"
+    f"a mesh is {_MESH_LIST}": (
+        ".3ds .3mf .abc .blend .c4d .dae .fbx .iges .lwo .ma .max .mb .off .ply .skp .step .stp .usd"
         " .usda .usdc .usdz .vrm .wrl .x3d"
     ),
     "heights are .tif, .npy, .exr, .png, .r16 or .r32": (
@@ -101,6 +106,7 @@ class ExportOptions:
     bits: int = 0  # of a number; 0: the format's usual
     span: tuple[float, float] | None = None  # what 0 and the largest whole number mean
     grid: int = 0  # vertices of a mesh's longer side; 0: as many as the terrain has texels, up to 513
+    exaggeration: float = 0.0  # times that a mesh is higher over height 0 than the terrain; 0: true metres
     light: bool = False  # multiply a mesh's texture by the light
     techniques: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # of a web page: what else may
     # fill a pass, by the pass; none listed: all that fits
@@ -108,15 +114,17 @@ class ExportOptions:
     language: str = ""  # of a web page's interface: en or fr; "": English
 
 
-_OF_TEXTURES = ((*VALUES, *MESHES, *SHADERS), "a file of values, a mesh or a shader")
-_OF_MESHES = (MESHES, f"a mesh: {' or '.join(MESHES)}")
+_OF_TEXTURES = ((*VALUES, *TEXTURED, *SHADERS), "a file of values, a mesh with a texture or a shader")
+_OF_MESHES = (MESHES, f"a mesh: {_MESH_LIST}")
+_OF_TEXTURED = (TEXTURED, f"a mesh with a texture: {' or '.join(TEXTURED)}")
 _OF_VALUES = (VALUES, "a file of values, as .png and .tif")
 _OF_PAGES = (PAGES, f"a web page: {PAGES[0]}")
 _OPTIONS: tuple[tuple[str, str, Collection[str], str], ...] = (
     ("texture", "one texture is", *_OF_TEXTURES),
     ("kind", "a kind of data is", *_OF_TEXTURES),
     ("grid", "a grid is", *_OF_MESHES),
-    ("light", "light baked in is", *_OF_MESHES),
+    ("exaggeration", "an exaggeration is", *_OF_MESHES),
+    ("light", "light baked in is", *_OF_TEXTURED),
     ("bits", "bits are", *_OF_VALUES),
     ("span", "a range is", *_OF_VALUES),
     ("techniques", "menus of techniques are", *_OF_PAGES),

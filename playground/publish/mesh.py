@@ -1,12 +1,14 @@
-"""Convert the terrain to a mesh that other programs understand, and write it as glTF or OBJ.
+"""Convert the terrain to a mesh that other programs understand, and write it as glTF, OBJ or STL.
 
 x is east, y up and z south, as in glTF 2.0 (right-handed, +Y up); the middle of the terrain is at x = z = 0,
 sea level at y = 0. A regular grid, its rows from the north: not reduced where the terrain is flat. OBJ
-itself has no axes, and most programs take y for up.
+itself has no axes, and most programs take y for up. STL has neither axes nor a unit, and those who print it
+take z for up: there x is east, y north and z up.
 
 Sources: Khronos Group 2021, "glTF 2.0 Specification" (revision 2.0.1), sections 3 and 4, and the extension
 KHR_materials_unlit; Wavefront Technologies, "Advanced Visualizer" manual, appendix B1 (OBJ); Ramey, Rose and
-Tyerman 1995, "MTL material format (Lightwave, OBJ)", version 4.2.
+Tyerman 1995, "MTL material format (Lightwave, OBJ)", version 4.2;
+3D Systems 1989, "StereoLithography Interface Specification" (STL, binary).
 """
 
 from __future__ import annotations
@@ -251,3 +253,22 @@ def _lines(form: str, rows: NDArray[np.generic]) -> bytes:
         band = rows[start : start + _ROWS]
         parts.append(((form * len(band)) % tuple(band.ravel().tolist())).encode())
     return b"".join(parts)
+
+
+# ── STL ────────────────────────────────────────────────────────────────────────
+
+
+_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
+_STL_HEAD = 80  # bytes, which say what one likes
+
+
+def encode_stl(mesh: TerrainMesh, software: str = "") -> bytes:
+    """Return the bytes of a binary STL in metres: x east, y north, z up; normals are the triangles' own."""
+    corners = mesh.positions[mesh.triangles].astype(np.float64)
+    turned = np.stack([corners[..., 0], -corners[..., 2], corners[..., 1]], axis=-1)
+    normals = np.cross(turned[:, 1] - turned[:, 0], turned[:, 2] - turned[:, 0])
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    triangles = np.zeros(len(turned), _TRIANGLE)
+    triangles["normal"], triangles["corners"] = normals, turned
+    head = f"{software}: x east, y north, z up, in metres".encode()[:_STL_HEAD].ljust(_STL_HEAD)
+    return head + struct.pack("<I", len(turned)) + triangles.tobytes()

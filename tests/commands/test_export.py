@@ -121,7 +121,7 @@ def test_what_is_right_is_written_beside_mistakes(folder: Path, capsys: pytest.C
     assert out.split() == ["a.npy", "c.npy"] == names(folder)
     *_, count, first, second = error.splitlines()
     assert count == "2 of 4 files are written"
-    assert first == "error: a.fbx: nothing is exported as '.fbx'; a mesh is .glb or .obj"
+    assert first == "error: a.fbx: nothing is exported as '.fbx'; a mesh is .glb, .obj or .stl"
     assert second.endswith("no/b.png: there is no folder 'no' to write into")
     command = ["export", "rise", "--to", "a.png", "--to", "b.tif", "--texture", "colr"]
     assert cli.main(command) == 2

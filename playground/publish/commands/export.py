@@ -47,7 +47,8 @@ HELP = help_text(
     " are. With it, they hold that texture; .png, .webp and .jpg encode colours as sRGB. The first row is"
     " the north's. A .tif lies where the elevation file of the terrain does, in its reference system.\n\n"
     ".glb (glTF) and .obj hold the terrain as a mesh with its texture, in metres: x east, y up, z south,"
-    " the terrain's middle at x = z = 0, sea level at y = 0.\n\n"
+    " the terrain's middle at x = z = 0, sea level at y = 0. .stl holds its shape alone, in metres: x east, y"
+    " north, z up.\n\n"
     ".fs (ISF), .frag (a Shadertoy text of one pass), .json (a Shadertoy export: up to four buffers, an Image"
     " and what they share) and .glsl (a fragment shader of its own) hold the picture as a shader, or with"
     " --texture one texture. What cannot leave is named, and no shader is written.\n\n"
@@ -62,6 +63,7 @@ HELP = help_text(
     "playground export diamond_square --set size=1025 --to terrain.r16",
     "playground export jacksboro --texture colour --to ground.webp",
     "playground export jacksboro --to terrain.glb --light --grid 257",
+    "playground export jacksboro --to model.stl",
     "playground export jacksboro --preset evening --light --to terrain.obj",
     "playground export fbm --texture height --to hills.json",
     "playground export deterministic_fractal --to fractal.fs",

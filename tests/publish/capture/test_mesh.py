@@ -15,6 +15,8 @@ import playground
 from playground import Sketch
 from playground.data.grid import fitted
 from playground.engine.engine import Engine
+from playground.publish.export import prepare, run
+from playground.publish.export_formats import ExportOptions
 from playground.publish.mesh import encode_glb, encode_obj, sampled, terrain_mesh
 
 from .conftest import metres
@@ -230,3 +232,26 @@ def test_sampling_is_exact_where_texels_meet_and_linear_between():
 def test_a_single_row_of_texels_has_no_mesh():
     with pytest.raises(playground.DataError, match="terrain of 5 x 1 texels has no mesh"):
         terrain_mesh(np.zeros((1, 5), np.float32), (1.0, 1.0))
+
+
+def test_an_stl_has_the_triangles_of_the_glb_with_z_up(any_engine: Engine, lop: Sketch, tmp_path: Path):
+    shape = trimesh.load_mesh(playground.export(lop, tmp_path / "a.stl", engine=any_engine).path)
+    glb = opened(playground.export(lop, tmp_path / "a.glb", engine=any_engine).path)
+    x, y, z = np.moveaxis(glb.triangles, -1, 0)
+    np.testing.assert_allclose(shape.triangles, np.stack([x, -z, y], axis=-1), atol=1e-3)
+    assert (shape.face_normals[:, 2] > 0).all()
+    np.testing.assert_allclose(shape.bounds, [[-400, -150, 175], [400, 150, 925]], rtol=1e-6)
+
+
+@pytest.mark.parametrize("ending", [*ENDINGS, "stl"])
+def test_an_exaggerated_mesh_is_higher_over_height_0(
+    ending: str, any_engine: Engine, lop: Sketch, heightmap: np.ndarray, tmp_path: Path
+):
+    path = tmp_path / f"a.{ending}"
+    job = prepare(any_engine, lop, path, ExportOptions(exaggeration=3.0))
+    done = run(any_engine, job)
+    low, high = trimesh.load_mesh(path).bounds[:, 2 if ending == "stl" else 1]
+    base = 50.0
+    assert low == pytest.approx(base + 3 * (heightmap.min() - base), rel=1e-6)
+    assert high == pytest.approx(base + 3 * (heightmap.max() - base), rel=1e-6)
+    assert "3 times as high as it is" in done.summary
