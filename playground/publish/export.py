@@ -116,9 +116,10 @@ def export(
     ``.png``, ``.r16``, ``.r32``, ``.tif``, ``.exr`` and ``.npy`` hold the heights, in metres, or
     the ``texture`` named; ``.webp`` and ``.jpg`` colours; ``.glb`` and ``.obj`` the terrain with its
     texture, ``.stl`` without; ``.fs``, ``.frag``, ``.json`` and ``.glsl`` the picture, or a texture, as a
-    shader; ``.html`` is a web page in which the whole sketch runs. Rows come from the north. The other arguments are those
-    of ``ExportOptions``; ``time``, in seconds, and ``steps`` are as in ``Engine.render``. A file of that
-    name is replaced, whole or not at all. Without an ``engine`` one is opened.
+    shader; ``.html`` is a web page in which the whole sketch runs. Rows come from the north. The other
+    arguments are those of ``ExportOptions``; ``time``, in seconds, and ``steps`` are as in
+    ``Engine.render``. A file of that name is replaced, whole or not at all. Without an ``engine`` one is
+    opened.
 
     Those of ``ExportOptions``: ``kind`` of the numbers, ``bits`` a number, ``span`` of a PNG's black and
     white, ``grid`` of a mesh, its ``light``, ``techniques``, ``trace`` and ``language`` of a page. ``sketch``

@@ -51,6 +51,7 @@ HELP = help_text(
     " say what changes. --sweep takes a range or values, of two parameters for a grid; a part of a vector"
     " is named, as .azimuth, .r or .x. As SKETCH, - renders a shader's text from standard input, which is"
     " kept as a new file in this folder.\n\n"
+    "A .png has 8 bits a channel, with --bits 16 twice as many; an .exr holds the light in floats.\n\n"
     "With --texture, write the values of one pass instead: "
     + either([f"{ending} ({what})" for ending, what in VALUE_ENDINGS.items()])
     + ".",
@@ -64,6 +65,7 @@ HELP = help_text(
     "playground render shader.frag --time 2.5 -o - > frame.png",
     "playground render - < shader.frag",
     "playground render dem.tif --set height.longest=4097 -o picture.png",
+    "playground render jacksboro -o light.exr",
     "playground render jacksboro --size 20000x12000 -o poster.png",
     "playground render sun_flight --video flight.mp4 --size 1920x1080",
     "playground render jacksboro --shot evening --video still.webm --seconds 2 --fps 25",
@@ -83,6 +85,11 @@ class Output:
     texture: str = ""  # whose values are written, in place of the picture
     profile: bool = False
     driver: str = "auto"
+    bits: int = 8  # a channel of a PNG
+
+
+def _read_bits(text: str) -> int | None:
+    return int(text) if text in ("8", "16") else None
 
 
 _read_large = partial(read_pixels, most=MAX_PICTURE_SIDE)
@@ -118,6 +125,7 @@ def render(
             " default.",
         ),
     ] = "",
+    bits: Annotated[str, value("--bits N", "Bits a channel of a .png: 8, or 16.")] = "",
     profile: Annotated[bool, flag("--profile", "Print the milliseconds of each pass.")] = False,
     video: Annotated[
         str,
@@ -180,6 +188,14 @@ def render(
         steps=stops,
         time=time,
     )
+    depth = read_option("--bits", bits, _read_bits, "8 or 16") or 8
+    refuse(
+        {
+            "--bits is for one picture; --texture writes the values of one pass as they are": bits
+            and texture,
+            "--bits is for one picture": bits and series.many,
+        }
+    )
     renderer: Renderer = ctx.obj.or_else(software, device)
     if times is not None:
         moment = replace(moment, sketch=moment.sketch.with_picture(supersample=times))
@@ -188,7 +204,7 @@ def render(
         SeriesJob(series, moment, output, size, renderer, driver).make()
     else:
         chosen = size or moment.size or DEFAULT_PICTURE
-        write_output(moment, Output(output, chosen, texture, profile, driver), renderer)
+        write_output(moment, Output(output, chosen, texture, profile, driver, depth), renderer)
 
 
 def write_output(moment: Moment, output: Output, renderer: Renderer) -> None:
@@ -225,6 +241,9 @@ def _draw(engine: Engine, output: Output, moment: Moment, target: Path) -> None:
     """Draw the picture, or read the texture, and write it: in parts where it is too large for one frame."""
     from playground.publish.large import is_large
 
+    if output.bits == 16 or target.suffix.lower() == ".exr":
+        _draw_deep(engine, output, moment, target)
+        return
     if not output.texture and is_large(engine, moment.sketch, output.size):
         if output.profile:
             raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
@@ -242,6 +261,19 @@ def _draw(engine: Engine, output: Output, moment: Moment, target: Path) -> None:
             _write_texture(engine, moment.sketch, output.texture, target, at)
         else:
             _write_frame(engine, moment.sketch, target, at)
+    _note_not_finite(engine)
+
+
+def _draw_deep(engine: Engine, output: Output, moment: Moment, target: Path) -> None:
+    """Draw a picture of more than 8 bits, and write it."""
+    from playground.publish.deep_picture import save_deep
+
+    if output.profile or target.name == "-" or target.suffix.lower() not in (".png", ".exr"):
+        raise ParameterError("--bits 16 is for a .png without --profile, and for no other file")
+    engine.options.looks_early = True
+    with busy(f"rendering {moment.sketch.name}") as show:
+        engine.runner.works.on_progress = show
+        save_deep(engine, moment.sketch, target, output.size, time=moment.time, steps=moment.steps)
     _note_not_finite(engine)
 
 
@@ -285,7 +317,7 @@ def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: P
 
 def _target(output: Output, moment: Moment) -> AbstractContextManager[Path]:
     """Open the file to write; refuse what could not be written before anything is drawn."""
-    endings = tuple(VALUE_ENDINGS) if output.texture else PICTURE_ENDINGS
+    endings = tuple(VALUE_ENDINGS) if output.texture else (*PICTURE_ENDINGS, ".exr")
     if output.file == "-":
         if output.texture:
             raise ParameterError(f"--texture needs a file: -o {either([f'NAME{e}' for e in endings])}")
