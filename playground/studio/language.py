@@ -12,6 +12,8 @@ import tomllib
 from functools import cache
 from pathlib import Path
 
+from playground import errors
+
 LANGUAGES = {"en": "English", "fr": "Français"}
 
 _chosen = "en"
@@ -34,6 +36,13 @@ def tr(text: str, **values: object) -> str:
     """Return words of the window in the language that is in use, with values in the place of their names."""
     words = _translations(_chosen).get(text, text) if _chosen != "en" else text
     return words.format(**values) if values else words
+
+
+def counted(number: int, noun: str) -> str:
+    """Return "1 file", "2 files" in the language that is in use; in French 0 is singular too."""
+    if _chosen == "en":
+        return errors.counted(number, noun)
+    return f"{number} {tr(noun if number in (0, 1) else f'{noun}s')}"
 
 
 @cache

@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 
 from playground.engine.trace.probe import ProbeMap
-from playground.errors import counted
 from playground.memo import INTERFACE
 from playground.paths import shown
 from playground.shader.syntax.tokens import tokenize
@@ -34,9 +33,10 @@ from playground.studio.draw import (
     styled,
     wrapped,
 )
+from playground.studio.language import counted, tr
 from playground.studio.theme import Theme
 from playground.studio.trace.rows import FunctionHead, Item, LoopHead, Row, TraceView
-from playground.studio.trace.tracing import Beside, Tracing
+from playground.studio.trace.tracing import Beside, Spot, Tracing
 from playground.studio.widgets import slide_whole
 
 if TYPE_CHECKING:
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 
 _CODE = 0.52  # fraction of the width that code takes first
 _SLIDER, _SPARK = 124.0, 96.0  # [units of scale 1] widths
-_SHOW, _BACK, _FIND = "Show as a map", "Back to the picture", "First texel where it is true"
 _REST = 76.0  # [units of scale 1] that "… 3 more" takes
 _CLICK = 4.0  # that the mouse may move during a click
 _GUTTER = 5  # letters left of the code: the line's number
@@ -98,11 +97,13 @@ class TracePanel:
         view, wide = tracing.view, 10 * imgui.get_font_size()
         self._pass(tracing, wide)
         pinned = tracing.is_pinned
-        label = "Unpin" if pinned else "Pin"
+        label = tr("Unpin") if pinned else tr("Pin")
         note = (
-            "Trace what is under the mouse" if pinned else "Stay at this texel, as by a click on the picture"
+            tr("Trace what is under the mouse")
+            if pinned
+            else tr("Stay at this texel, as by a click on the picture")
         )
-        unpin = _width_of("Unpin")
+        unpin = max(_width_of(tr("Unpin")), _width_of(tr("Pin")))
         _flow(unpin)
         if button(f"{label}##pin", note, wide=unpin):
             tracing.follow() if pinned else tracing.pin_here()
@@ -110,20 +111,30 @@ class TracePanel:
         imgui.set_next_item_width(0.9 * wide)
         self._functions(tracing)
         bad = view.trace.first_not_finite() if view is not None else None
-        if _flowing("! First not finite", "The line that first gives NaN or infinity", bad is not None):
+        if _flowing(
+            tr("! First not finite"), tr("The line that first gives NaN or infinity"), bad is not None
+        ):
             tracing.go_to_not_finite()
-        if _flowing("Keep", "Compare what follows with this trace", view is not None):
+        if _flowing(tr("Keep"), tr("Compare what follows with this trace"), view is not None):
             tracing.keep()
         _flow(wide)
         imgui.set_next_item_width(wide)
-        beside = choose("##beside", f"beside: {tracing.beside.value}", Beside, tracing.beside, name=_beside)
+        beside = choose(
+            "##beside",
+            tr("beside: {name}", name=_beside(tracing.beside)),
+            Beside,
+            tracing.beside,
+            name=_beside,
+        )
         if beside is not None:
             tracing.compare(beside)
         if view is not None and tracing.other() is not None:
             parts = view.difference is not None
-            if _flowing("≠ First difference", "The first event at which the two part", parts):
+            if _flowing(tr("≠ First difference"), tr("The first event at which the two part"), parts):
                 tracing.go_to_difference()
-        if tracing.can_be_plain and _flowing("Trace its plain form", "It runs first, which may take a while"):
+        if tracing.can_be_plain and _flowing(
+            tr("Trace its plain form"), tr("It runs first, which may take a while")
+        ):
             tracing.trace_plain()
         self._steps(tracing, wide)
         self._files(tracing, look)
@@ -134,13 +145,13 @@ class TracePanel:
         imgui.set_next_item_width(wide)
         chosen = choose(
             "##pass",
-            spot.path if spot is not None else "pass",
+            spot.path if spot is not None else tr("pass"),
             tracing.spots,
             spot,
             name=lambda each: f"{each.path}   {each.texel[0]}, {each.texel[1]}",
             flags=imgui.ComboFlags_.height_large,
         )
-        imgui.set_item_tooltip("The pass that is traced, at the texel of its own under the mouse")
+        imgui.set_item_tooltip(tr("The pass that is traced, at the texel of its own under the mouse"))
         if chosen is not None:
             tracing.choose_pass(chosen.path)
 
@@ -148,13 +159,15 @@ class TracePanel:
         view = tracing.view
         names = [*view.trace.others, *view.trace.functions] if view is not None else []
         options: list[str | None] = [None, "all", *dict.fromkeys(names)]
-        chosen = _FUNCTIONS.get(tracing.function) or tracing.function
-        if imgui.begin_combo("##functions", f"functions: {chosen}"):
+        chosen = _function_name(tracing.function)
+        if imgui.begin_combo("##functions", tr("functions: {name}", name=chosen)):
             for option in options:
-                if imgui.selectable(_FUNCTIONS.get(option) or str(option), option == tracing.function)[0]:
+                if imgui.selectable(_function_name(option), option == tracing.function)[0]:
                     tracing.record(option)
             imgui.end_combo()
-        imgui.set_item_tooltip("Whose values are recorded; a large text with all takes seconds to compile")
+        imgui.set_item_tooltip(
+            tr("Whose values are recorded; a large text with all takes seconds to compile")
+        )
 
     def _state(self, tracing: Tracing, look: Theme) -> None:
         """Draw the line that says what the trace is of, or why there is none."""
@@ -174,7 +187,9 @@ class TracePanel:
             _flow(wide)
             now = count - 1 if tracing.iteration is None else min(tracing.iteration, count - 1)
             imgui.set_next_item_width(wide)
-            number = slide_whole("##step", now + 1, (1, count), lambda n: f"step {n} of {count}")
+            number = slide_whole(
+                "##step", now + 1, (1, count), lambda n: tr("step {number} of {count}", number=n, count=count)
+            )
             if number is not None:
                 tracing.iteration = None if number == count else number - 1
 
@@ -222,7 +237,7 @@ class TracePanel:
             if imgui.get_cursor_pos_x() + wide > room:
                 imgui.text_disabled("…")
                 break
-            if button(label, f"line {call.line} of {shown(call.path)}", small=True):
+            if button(label, tr("line {line} of {file}", line=call.line, file=shown(call.path)), small=True):
                 tracing.file, tracing.line, tracing.scrolls = call.path, call.line, True
 
     def _rows(self, tracing: Tracing, view: TraceView, look: Theme) -> None:
@@ -332,7 +347,7 @@ class TracePanel:
                 self._call(view, row.head, look)
                 drawn = True
             elif row.head is not None and not row.head.is_linked:
-                imgui.text_disabled("(other iteration)")
+                imgui.text_disabled(tr("(other iteration)"))
                 drawn = True
             for at, head in enumerate(row.loops):
                 with pushed_id(f"loop {at}"):
@@ -353,18 +368,21 @@ class TracePanel:
     def _call(self, view: TraceView, head: FunctionHead, look: Theme) -> None:
         """Draw which call of a function is shown, and what steps through them."""
         caller = view.trace.calls[head.call].caller
-        by = f", by {view.trace.calls[caller].function}" if caller is not None else ""
-        note = f"{head.key[1]}: call {head.number} of {head.count}{by}"
-        number = _stepper("call", head.number, head.count, note, look)
+        note = tr("{name}: call {number} of {count}", name=head.key[1], number=head.number, count=head.count)
+        if caller is not None:
+            note += tr(", by {name}", name=view.trace.calls[caller].function)
+        number = _stepper(tr("call"), head.number, head.count, note, look)
         if number is not None:
             view.choose_call(head.key, number - 1)
         if not head.is_linked:
             imgui.same_line()
-            imgui.text_disabled("(other iteration)")
+            imgui.text_disabled(tr("(other iteration)"))
 
     def _loop(self, view: TraceView, head: LoopHead, look: Theme) -> None:
         """Draw the slider over a loop's iterations, and the sparkline of one of its names."""
-        note = f"iteration {head.chosen + 1} of {head.count}; Ctrl+click types one"
+        note = tr(
+            "iteration {number} of {count}; Ctrl+click types one", number=head.chosen + 1, count=head.count
+        )
         number = _stepper("", head.chosen + 1, head.count, note, look)
         if number is not None:
             view.choose_iteration(head, number - 1)
@@ -396,8 +414,9 @@ class TracePanel:
             at = round((imgui.get_io().mouse_pos.x - corner.x) / size.x * max(head.count - 1, 0))
             at = min(max(at, 0), head.count - 1)
             number = head.series[at]
-            text = "no value" if number is None else f"{number:.6g}"
-            imgui.set_tooltip(f"{head.plotted}, iteration {at + 1}: {text}\nright click: another name")
+            text = tr("no value") if number is None else f"{number:.6g}"
+            note = tr("{name}, iteration {number}: {value}", name=head.plotted, number=at + 1, value=text)
+            imgui.set_tooltip(f"{note}\n{tr('right click: another name')}")
             if imgui.is_mouse_clicked(0):
                 view.choose_iteration(head, at)
         if imgui.begin_popup_context_item("##names"):
@@ -410,18 +429,20 @@ class TracePanel:
 
     def _probe(self, tracing: Tracing, look: Theme) -> None:
         """Draw the field of an expression, and what shows it."""
-        where = f"behind line {tracing.line}" if tracing.line else "behind a line"
+        where = tr("behind line {line}", line=tracing.line) if tracing.line else tr("behind a line")
         shows = isinstance(tracing.session.view.map, ProbeMap)
-        labels = _BACK if shows else _SHOW, _FIND
+        back, show = tr("Back to the picture"), tr("Show as a map")
+        find = tr("First texel where it is true")
+        labels = back if shows else show, find
         imgui.align_text_to_frame_padding()
-        imgui.text_disabled("Probe")
+        imgui.text_disabled(tr("Probe"))
         imgui.same_line()
         wide = imgui.calc_text_size(where).x + imgui.get_style().item_spacing.x
         if not _probe_is_broken():
             wide += sum(_width_of(label) + imgui.get_style().item_spacing.x for label in labels)
         imgui.set_next_item_width(-wide)
         with look.font(look.code):
-            hint = "an expression: select it in a line, or type it"
+            hint = tr("an expression: select it in a line, or type it")
             _, tracing.expression = imgui.input_text_with_hint("##probe", hint, tracing.expression)
         imgui.same_line()
         imgui.text_disabled(where)
@@ -429,12 +450,12 @@ class TracePanel:
             imgui.same_line()
         can = bool(tracing.line and tracing.expression.strip())
         if shows:
-            if button(_BACK, "The sketch's own view again"):
+            if button(back, tr("The sketch's own view again")):
                 tracing.session.show(None)
-        elif button(_SHOW, "Its value in every texel; legend and histogram: in the panel", enabled=can):
+        elif button(show, tr("Its value in every texel; legend and histogram: in the panel"), enabled=can):
             tracing.show_probe()
         imgui.same_line()
-        if button(_FIND, "The first texel, from the south-west, where it is not 0", enabled=can):
+        if button(find, tr("The first texel, from the south-west, where it is not 0"), enabled=can):
             tracing.show_probe(find=True)
         if tracing.probe_message:
             with look.font(look.text, theme.SMALL):
@@ -479,13 +500,18 @@ def _flowing(label: str, note: str, enabled: bool = True) -> bool:
 
 def _stepper(word: str, number: int, count: int, note: str, look: Theme) -> int | None:
     """Draw a slider from 1 to a count between two buttons; return the number that is chosen."""
-    chosen = number - 1 if button("<", "the one before", small=True, enabled=number > 1) else None
+    chosen = number - 1 if button("<", tr("the one before"), small=True, enabled=number > 1) else None
     imgui.same_line(0, 2 * look.scale)
     imgui.set_next_item_width(_SLIDER * look.scale)
-    slid = slide_whole("##slide", number, (1, max(count, 1)), lambda n: f"{word} {n} of {count}".strip())
+    slid = slide_whole(
+        "##slide",
+        number,
+        (1, max(count, 1)),
+        lambda n: tr("{word} {number} of {count}", word=word, number=n, count=count).strip(),
+    )
     imgui.set_item_tooltip(note)
     imgui.same_line(0, 2 * look.scale)
-    if button(">", "the next one", small=True, enabled=number < count):
+    if button(">", tr("the next one"), small=True, enabled=number < count):
         chosen = number + 1
     return slid if slid is not None else chosen
 
@@ -496,36 +522,44 @@ def _stepper(word: str, number: int, count: int, note: str, look: Theme) -> int 
 def title_of(tracing: Tracing) -> str:
     """Return the window's title: which texel of which pass."""
     spot = tracing.spot
-    return f"Trace: {spot}" if spot is not None else "Trace: move the mouse over the picture"
+    return (
+        tr("Trace: {spot}", spot=spot) if spot is not None else tr("Trace: move the mouse over the picture")
+    )
 
 
 def state_of(tracing: Tracing) -> tuple[str, theme.Rgb]:
     """Return what is traced or why it is not, and the colour to write it in."""
     view = tracing.view
     if tracing.compiling:
-        return f"compiling {tracing.compiling} …", theme.palette.warm
+        return tr("compiling {name} …", name=tracing.compiling), theme.palette.warm
     if tracing.message:
         return tracing.message, theme.palette.warm
     if view is None:
         return (
-            "a click on the picture pins a texel; Shift+click compares it with the one before",
+            tr("a click on the picture pins a texel; Shift+click compares it with the one before"),
             theme.palette.dim,
         )
     trace = view.trace
-    parts = [f"{counted(len(trace.events), 'value')} of {counted(len(trace.calls), 'call')}"]
+    parts = [
+        tr(
+            "{values} of {calls}",
+            values=counted(len(trace.events), "value"),
+            calls=counted(len(trace.calls), "call"),
+        )
+    ]
     if not trace.is_complete:
-        parts.append("cut at the limit of events")
+        parts.append(tr("cut at the limit of events"))
     if trace.is_discarded:
-        parts.append("the run ends in a discard")
+        parts.append(tr("the run ends in a discard"))
     elif trace.is_exact:
-        parts.append("its result is the texel's, bit for bit")
+        parts.append(tr("its result is the texel's, bit for bit"))
     else:
-        parts.append("its result differs from the texel's: the driver rounds a recorded sum otherwise")
+        parts.append(tr("its result differs from the texel's: the driver rounds a recorded sum otherwise"))
     if tracing.other() is None:
-        missing = {Beside.KEPT: "nothing is kept yet", Beside.SAVE: "nothing was saved since"}
+        missing = {Beside.KEPT: tr("nothing is kept yet"), Beside.SAVE: tr("nothing was saved since")}
         parts += [missing[tracing.beside]] if tracing.beside in missing else []
     else:
-        parts.append("both run alike" if view.difference is None else f"≠ {other_name(tracing)}")
+        parts.append(tr("both run alike") if view.difference is None else f"≠ {other_name(tracing)}")
     return "   ".join(parts), theme.palette.dim
 
 
@@ -533,12 +567,16 @@ def other_name(tracing: Tracing) -> str:
     """Return what is beside a trace: its texel, where it is another, or the save before."""
     other = tracing.other()
     if other is None or tracing.beside is Beside.SAVE:
-        return "before the last save"
-    return f"{other.step} at {other.texel[0]}, {other.texel[1]}, kept"
+        return tr("before the last save")
+    return tr("{spot}, kept", spot=Spot(other.step, (other.texel[0], other.texel[1])))
 
 
 def _beside(beside: Beside) -> str:
-    return beside.value
+    return tr(beside.value)
+
+
+def _function_name(function: str | None) -> str:
+    return tr(_FUNCTIONS[function]) if function in _FUNCTIONS else str(function)
 
 
 def word_at(code: str, column: int) -> tuple[int, int]:
@@ -612,7 +650,9 @@ def _item(item: Item, room: float, look: Theme) -> bool:
     ink = theme.palette.ink if item.is_finite else theme.palette.alarm
     imgui.text_colored(theme.colour(ink), fitting(value, left))
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    imgui.set_item_tooltip(item.full + (f"\nin the other trace: {item.other}" if item.other else ""))
+    imgui.set_item_tooltip(
+        item.full + ("\n" + tr("in the other trace: {value}", value=item.other) if item.other else "")
+    )
     gap = ImVec2(2 * look.scale, 0)
     draw = imgui.get_window_draw_list()
     if not item.is_finite:
@@ -627,7 +667,7 @@ def _item(item: Item, room: float, look: Theme) -> bool:
 
 
 def _rest(items: Sequence[Item], look: Theme) -> None:
-    imgui.text_disabled(f"… {len(items)} more")
+    imgui.text_disabled(tr("… {count} more", count=len(items)))
     imgui.set_item_tooltip("\n".join(item.full for item in items))
 
 

@@ -16,6 +16,7 @@ from functools import cached_property
 
 from playground.engine.trace.listing import text_of
 from playground.engine.trace.model import Call, Event, Loop, Trace, Value, first_difference
+from playground.studio.language import tr
 
 FunctionKey = tuple[str, str, int]
 """A function: its file, its name, the line of its head."""
@@ -343,7 +344,7 @@ class TraceView:
         result = []
         for item in items:
             beside = other.get((item.event.kind, item.event.name))
-            text = "none" if beside is None else beside.text if beside.full != item.full else ""
+            text = tr("none") if beside is None else beside.text if beside.full != item.full else ""
             parts = first is not None and item.event.index == first.index
             result.append(Item(item.name, item.text, item.full, item.is_finite, item.event, text, parts))
         return tuple(result)
@@ -369,12 +370,12 @@ def _key_of(call: Call) -> FunctionKey:
 def _item(kind: str, name: str, events: Sequence[Event]) -> Item:
     shown = {"return": "→", "condition": "?", "discard": ""}.get(kind, name)
     if kind == "discard":
-        return Item("", "discard", "the run ends here: discard", True, events[-1])
+        return Item("", "discard", tr("the run ends here: discard"), True, events[-1])
     short = [text_of(event.value, short=True) for event in events]
     if len(short) > _MAX_VALUES:
         short = [*short[: _MAX_VALUES - 2], "…", short[-1]]
     full = " | ".join(text_of(event.value) for event in events)
-    title = f"returns {full}" if kind == "return" else f"{name} = {full}"
+    title = tr("returns {value}", value=full) if kind == "return" else f"{name} = {full}"
     finite = all(event.is_finite for event in events)
     return Item(shown, " | ".join(short), title, finite, events[-1])
 

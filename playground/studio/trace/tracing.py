@@ -24,6 +24,7 @@ from playground.errors import PlaygroundError
 from playground.sketch.model import ComputeVariant, CpuSource, Draw, PlainFragment, TexelKernel
 from playground.sketch.variants import canonical_path
 from playground.studio.inspect.inspector import Inspector, Pixel
+from playground.studio.language import tr
 from playground.studio.reload.stages import refusal
 from playground.studio.session import Session
 from playground.studio.trace.rows import Selection, TraceView
@@ -61,7 +62,7 @@ class Spot:
     texel: tuple[int, int]  # column and row, from the south-west
 
     def __str__(self) -> str:
-        return f"{self.path} at {self.texel[0]}, {self.texel[1]}"
+        return tr("{path} at {column}, {row}", path=self.path, column=self.texel[0], row=self.texel[1])
 
 
 @dataclass
@@ -167,8 +168,8 @@ class Tracing:
         if event is not None:
             self.go_to(event)
         elif self.on:
-            others = "; record all functions" if self.function != "all" else ""
-            self.message = f"no recorded value is NaN or infinite{others}"
+            others = tr("; record all functions") if self.function != "all" else ""
+            self.message = tr("no recorded value is NaN or infinite") + others
 
     def go_to_difference(self) -> None:
         """Show the first event that differs from the other trace."""
@@ -323,7 +324,7 @@ class Tracing:
         plan = self._plan_of(spot)
         step = _step_of(plan, spot.path)
         if step is None:
-            self._fail(f"the picture was made without '{spot.path}'", wanted)
+            self._fail(tr("the picture was made without '{path}'", path=spot.path), wanted)
         elif not is_traceable(step):
             self._fail(f"'{spot.path}' {why_not(step)}", wanted)
         else:
@@ -475,7 +476,7 @@ class Tracing:
             return
         self.session.view.show(probe_map)
         self.session.fit_map()
-        self.probe_message = f"the map shows {probe_map.probe}"
+        self.probe_message = tr("the map shows {probe}", probe=_name_of(probe_map.probe))
         if self._find is not None:
             self._find = self.session.view.map if isinstance(self.session.view.map, ProbeMap) else None
 
@@ -485,21 +486,29 @@ class Tracing:
         assert probe_map is not None
         found = first_hit(self.session, probe_map)
         if found is None:
-            self.probe_message = f"{probe_map.probe} is 0 or false in every texel"
+            self.probe_message = tr("{probe} is 0 or false in every texel", probe=_name_of(probe_map.probe))
             return
         texel, count, runs = found
         self.pin, self._fixed = None, Spot(canonical_path(probe_map.probe.path), texel)
         self._seek_run = runs
-        more = f"; {count:,} texels in all" if count > 1 else "; in no other"
-        self.probe_message = f"first at texel {texel[0]}, {texel[1]}, in run {runs}{more}"
+        more = tr("; {count} texels in all", count=f"{count:,}") if count > 1 else tr("; in no other")
+        first = tr("first at texel {column}, {row}, in run {runs}", column=texel[0], row=texel[1], runs=runs)
+        self.probe_message = first + more
 
 
 def complaint(error: PlaygroundError, probe: Probe) -> str:
     """Return why a probe does not compile: the driver's first message, without what it follows from."""
     first = error.diagnostics[0]
     if "k_see" in first.message:
-        return f"'{probe.expression}' is no number, vector or condition; probe a part of it: [0], or a member"
+        return tr(
+            "'{expression}' is no number, vector or condition; probe a part of it: [0], or a member",
+            expression=probe.expression,
+        )
     return first.message if first.line == probe.line else str(first)
+
+
+def _name_of(probe: Probe) -> str:
+    return tr("{expression} behind line {line}", expression=probe.expression, line=probe.line)
 
 
 def run_events(trace: Trace, path: str, line: int) -> list[Event]:
@@ -541,7 +550,7 @@ def why_not(step: Step) -> str:
     """Return why a step has no trace."""
     match step.kernel:
         case ComputeVariant():
-            return "runs as a compute shader, its fast variant; its plain form can be traced"
+            return tr("runs as a compute shader, its fast variant; its plain form can be traced")
         case CpuSource():
-            return "is made by the processor, so it has no lines to trace; choose another pass"
-    return "is a compute shader, which is not traced; choose another pass"
+            return tr("is made by the processor, so it has no lines to trace; choose another pass")
+    return tr("is a compute shader, which is not traced; choose another pass")
