@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from playground.errors import PlaygroundError, counted
+from playground.errors import PlaygroundError
 from playground.files import new_name, read_regular, write_file
 from playground.paths import GLSL, shown
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
@@ -18,6 +18,7 @@ from playground.studio.channels.channels import source_of
 from playground.studio.edits.edits import Draft
 from playground.studio.edits.history import FILES, History, Key
 from playground.studio.edits.undo import Undo
+from playground.studio.language import counted, tr
 from playground.studio.notices import Notices
 from playground.studio.save.sketch_file import FileTexts, SketchFile, contents_of, save_presets
 from playground.studio.save.sketch_of_shader import is_shader, save_as_sketch
@@ -61,7 +62,11 @@ class Actions:
             if self._open(self._visited[self._at + by]):
                 self._at += by
         else:
-            self.notices.say(f"no other sketch was opened {'before' if by < 0 else 'after'} this one")
+            self.notices.say(
+                tr("no other sketch was opened before this one")
+                if by < 0
+                else tr("no other sketch was opened after this one")
+            )
 
     def _open(self, path: Path) -> bool:
         try:
@@ -78,10 +83,12 @@ class Actions:
         try:
             path = keep_text(text, self.folder)
         except PlaygroundError as error:
-            self.notices.say(f"the clipboard: {error}")
+            self.notices.say(tr("the clipboard: {error}", error=error))
             return
         if self.open(path):
-            self.notices.say(f"pasted as {path.name} in {path.parent}; Backspace goes back")
+            self.notices.say(
+                tr("pasted as {path} in {parent}; Backspace goes back", path=path.name, parent=path.parent)
+            )
 
     # ── many values at once ──────────────────────────────────────────────────
 
@@ -93,7 +100,11 @@ class Actions:
         locked = len(set(values) & set(draft.edits.locked))
         with self.undo.step(name):
             self.session.drafts.set_all(values)
-        left = f"; {counted(locked, 'locked parameter')} left alone" if locked else ""
+        left = (
+            tr("; {locked_parameters} left alone", locked_parameters=counted(locked, "locked parameter"))
+            if locked
+            else ""
+        )
         self.notices.say(f"{name}: {counted(len(values) - locked, 'parameter')}{left}")
 
     def apply_preset(self, name: str) -> None:
@@ -101,18 +112,18 @@ class Actions:
         sketch = self.session.sketch
         for preset in sketch.presets if sketch else ():
             if preset.name == name:
-                self.set_all(f"Preset {name}", dict(preset.values))
+                self.set_all(tr("Preset {name}", name=name), dict(preset.values))
 
     def reset_values(self) -> None:
         """Reset all that is not locked to what the file says, as one step."""
-        with self.undo.step("Reset values"):
+        with self.undo.step(tr("Reset values")):
             self.session.reset_values()
 
     def reset(self, name: str, paths: list[str]) -> None:
         """Reset some parameters to the file's values, as one step; locked ones stay."""
         draft = self.session.shown
         if draft is not None:
-            with self.undo.step(f"Reset {name}"):
+            with self.undo.step(tr("Reset {name}", name=name)):
                 self.session.drafts.unset(*(path for path in paths if path not in draft.edits.locked))
 
     # ── saving ───────────────────────────────────────────────────────────────
@@ -129,10 +140,17 @@ class Actions:
             self.save_a_copy()
             return
         if draft.sketch == draft.file:
-            self.notices.say(f"nothing differs from the file{self._missed}")
+            self.notices.say(tr("nothing differs from the file{missed}", missed=self._missed))
         elif self.file.write(lambda: save(draft.file, draft.sketch)):
             self.undo.history.saved(_values_in_file(draft))
-            self.notices.say(f"saved {_summary(draft)} into {shown(draft.file.file)}{self._missed}")
+            self.notices.say(
+                tr(
+                    "saved {summary} into {file}{missed}",
+                    summary=_summary(draft),
+                    file=shown(draft.file.file),
+                    missed=self._missed,
+                )
+            )
 
     @property
     def copy_is(self) -> tuple[str, str]:
@@ -140,8 +158,10 @@ class Actions:
         draft = self.session.shown
         if draft is not None and is_shader(draft):
             shader = Path(draft.file.file).name
-            return "Save a sketch", f"A new sketch that uses {shader}, which stays as it is"
-        return "Save a copy", f"A new folder in {self.folder}"
+            return tr("Save a sketch"), tr(
+                "A new sketch that uses {shader}, which stays as it is", shader=shader
+            )
+        return tr("Save a copy"), tr("A new folder in {folder}", folder=self.folder)
 
     def save_a_copy(self) -> None:
         """Save the sketch with the user's edits as a new one in the current folder, and go on with that.
@@ -160,8 +180,14 @@ class Actions:
             self.notices.say(str(error))
             return
         self.undo.history.saved(_values_in_file(draft))
-        what = f"{path.name} in {path.parent}" if saved else f"a copy in {path.parent}"
-        self.notices.say(f"saved {what}; from here on this is the sketch{self._missed}")
+        what = (
+            tr("{path} in {parent}", path=path.name, parent=path.parent)
+            if saved
+            else tr("a copy in {parent}", parent=path.parent)
+        )
+        self.notices.say(
+            tr("saved {what}; from here on this is the sketch{missed}", what=what, missed=self._missed)
+        )
         self._visits(self.session.path, path)
         self.session.open_copy(path, saved)
 
@@ -176,27 +202,34 @@ class Actions:
         roots = {Path(s.technique.path): s.technique for s in passes if str(path) in s.technique.files}
         root = next((r for r in roots if path == r or path.is_relative_to(r.with_suffix(""))), None)
         if draft is None or root is None:
-            self.notices.say(f"{path.name} is a part of other files, and no technique of a pass by itself")
+            self.notices.say(
+                tr("{path} is a part of other files, and no technique of a pass by itself", path=path.name)
+            )
             return None
         files = [root, *(f for f in map(Path, roots[root].files) if f.is_relative_to(root.with_suffix("")))]
         copies = {file: Path(draft.sketch.folder) / file.relative_to(root.parent) for file in files}
         taken = [copy for copy in copies.values() if copy.exists()]
         if taken:
-            self.notices.say(f"{taken[0].name} is in the sketch's folder already; rename it, and copy again")
+            self.notices.say(
+                tr("{name} is in the sketch's folder already; rename it, and copy again", name=taken[0].name)
+            )
             return None
         try:
             for file, copy in copies.items():
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 write_file(copy, read_regular(file))
         except (OSError, PlaygroundError) as error:
-            self.notices.say(f"{path.name} cannot be copied: {error}")
+            self.notices.say(tr("{path} cannot be copied: {error}", path=path.name, error=error))
             return None
-        with self.undo.step(f"Copy {root.stem}"):
+        with self.undo.step(tr("Copy {stem}", stem=root.stem)):
             for spec in passes:
                 if spec.technique.path == str(root):
                     self.session.drafts.choose(spec.name, f"./{root.stem}")
         self.notices.say(
-            f"copied {root.stem} into the sketch's folder; Ctrl+S has the sketch use it from now on"
+            tr(
+                "copied {stem} into the sketch's folder; Ctrl+S has the sketch use it from now on",
+                stem=root.stem,
+            )
         )
         return copies[path]
 
@@ -207,11 +240,19 @@ class Actions:
             return
         values = {path: value for path, value in draft.applied.items() if not isinstance(value, str)}
         if not values:
-            self.notices.say("no value is edited, so the preset would be empty")
+            self.notices.say(tr("no value is edited, so the preset would be empty"))
         elif self._write_step(
-            draft, lambda: save_preset(draft.file, name.strip(), values), f"Save the preset {name.strip()}"
+            draft,
+            lambda: save_preset(draft.file, name.strip(), values),
+            tr("Save the preset {name}", name=name.strip()),
         ):
-            self.notices.say(f"saved {counted(len(values), 'value')} as the preset {name.strip()}")
+            self.notices.say(
+                tr(
+                    "saved {values} as the preset {name}",
+                    values=counted(len(values), "value"),
+                    name=name.strip(),
+                )
+            )
 
     def move_preset(self, name: str, by: int) -> None:
         """Move a preset up (-1) or down (1) in the sketch's file, as one step; at the ends it stays."""
@@ -221,7 +262,9 @@ class Actions:
             return
         at, order = names.index(name), list(range(len(names)))
         order[at], order[at + by] = order[at + by], order[at]
-        self._write_step(draft, lambda: save_presets(draft.file, order), f"Move the preset {name}")
+        self._write_step(
+            draft, lambda: save_presets(draft.file, order), tr("Move the preset {name}", name=name)
+        )
 
     def delete_preset(self, name: str) -> None:
         """Delete a preset from the sketch's file, as one step; what it set stays set."""
@@ -231,11 +274,15 @@ class Actions:
             return
         shots = [shot.name for shot in draft.file.shots if shot.preset == name]
         if shots:
-            self.notices.say(f"the preset {name} is not deleted: the shot {shots[0]} uses it")
+            self.notices.say(
+                tr("the preset {name} is not deleted: the shot {value} uses it", name=name, value=shots[0])
+            )
             return
         order = [at for at, other in enumerate(names) if other != name]
-        if self._write_step(draft, lambda: save_presets(draft.file, order), f"Delete the preset {name}"):
-            self.notices.say(f"deleted the preset {name}; Ctrl+Z brings it back")
+        if self._write_step(
+            draft, lambda: save_presets(draft.file, order), tr("Delete the preset {name}", name=name)
+        ):
+            self.notices.say(tr("deleted the preset {name}; Ctrl+Z brings it back", name=name))
 
     def _write_step(self, draft: Draft, act: Callable[[], None], name: str) -> bool:
         """Write into the sketch's file, as one step of the history; return whether that worked."""
@@ -262,22 +309,24 @@ class Actions:
         if draft is None:
             return
         if is_shader(draft):
-            self.notices.say(f"{Path(draft.file.file).name} is no TOML; Save makes a sketch of it")
+            self.notices.say(
+                tr("{name} is no TOML; Save makes a sketch of it", name=Path(draft.file.file).name)
+            )
             return
         file = Path(draft.file.file)
         try:
             text = saved_text(read_regular(file).decode("utf-8-sig"), draft.file, draft.sketch)
         except (OSError, UnicodeDecodeError) as error:
-            self.notices.say(f"{shown(draft.file.file)} cannot be read: {error}")
+            self.notices.say(tr("{file} cannot be read: {error}", file=shown(draft.file.file), error=error))
             return
         copy(text)
-        self.notices.say("copied the sketch as TOML")
+        self.notices.say(tr("copied the sketch as TOML"))
 
     def save_picture(self) -> None:
         """Save the picture as a PNG that is new in the folder, and say where."""
         frame = self.session.read()
         if frame is None:
-            self.notices.say("there is no picture to save yet")
+            self.notices.say(tr("there is no picture to save yet"))
             return
         stem = re.sub(r"[^\w.-]+", "-", frame.sketch).strip("-.") or "picture"
         try:
@@ -288,16 +337,24 @@ class Actions:
             return
         self.saved_picture = path
         width, height = frame.size
-        self.notices.say(f"saved {shown(path)}, {width} x {height} pixels, in {self.folder}")
+        self.notices.say(
+            tr(
+                "saved {file}, {width} x {height} pixels, in {folder}",
+                file=shown(path),
+                width=width,
+                height=height,
+                folder=self.folder,
+            )
+        )
 
     def _ready(self) -> Draft | None:
         """Return what is to be saved, its numbers as the file will have them; None, and a notice, if none."""
         drafts = self.session.drafts
         if drafts.shown is None:
-            self.notices.say("there is no sketch to save yet")
+            self.notices.say(tr("there is no sketch to save yet"))
             return None
         written = self.undo.painting.settle()
-        self._missed = "" if written else "; what was painted last could not be written, and is not in it"
+        self._missed = "" if written else tr("; what was painted last could not be written, and is not in it")
         drafts.shorten_values()
         if drafts.shown.edits.camera is not None:
             drafts.set_camera(rounded(drafts.shown.edits.camera))
@@ -338,5 +395,5 @@ def _summary(draft: Draft) -> str:
     parts = [counted(len(draft.applied), "value")] if draft.applied else []
     parts += [counted(len(draft.edits.techniques), "technique")] if draft.edits.techniques else []
     parts += [counted(len(draft.edits.channels), "channel")] if draft.edits.channels else []
-    parts += ["the camera"] if draft.edits.camera is not None else []
-    return " and ".join([", ".join(parts[:-1]), parts[-1]] if parts[1:] else parts)
+    parts += [tr("the camera")] if draft.edits.camera is not None else []
+    return tr(" and ").join([", ".join(parts[:-1]), parts[-1]] if parts[1:] else parts)

@@ -18,6 +18,7 @@ from playground.errors import PlaygroundError
 from playground.files import read_regular, write_file
 from playground.json_text import read_json
 from playground.paths import state_folder
+from playground.studio.language import tr
 from playground.studio.notices import Notices
 
 if TYPE_CHECKING:
@@ -186,7 +187,7 @@ def resize(preferences: Preferences, by: int, notices: Notices) -> None:
         preferences.step(by)
     else:
         preferences.choose(size=1.0)
-    what = "text and panels at"
+    what = tr("text and panels at")
     notices.drop(what)
     notices.say(f"{what} {preferences.size:.0%}")
 

@@ -30,6 +30,7 @@ from playground.studio.draw import (
     window,
 )
 from playground.studio.interface import Interface, resize
+from playground.studio.language import shortcut, tr
 from playground.studio.paint.brush import TOOLS, Tool
 from playground.studio.theme import Theme
 
@@ -58,7 +59,7 @@ def close_one(bench: Workbench) -> None:
     for _, close in _open(bench):
         close()
         return
-    bench.notices.say("nothing is open that Esc could close; Ctrl+Q quits")
+    bench.notices.say(tr("nothing is open that Esc could close; Ctrl+Q quits"))
 
 
 def open_layers(bench: Workbench) -> list[str]:
@@ -328,9 +329,9 @@ def draw_keymap(interface: Interface, look: Theme) -> None:
         "keys", flags, ground=theme.colour(theme.palette.popup, 0.98), rounding=8 * look.scale, sizes=cell
     ):
         with look.font(look.bold, theme.TEXT_SIZE + 2):
-            imgui.text_unformatted("Keys")
-        names = [(", ".join(names), meaning) for meaning, names in keys_by_meaning().items()]
-        rows = *names, *GESTURES
+            imgui.text_unformatted(tr("Keys"))
+        names = [(shortcut(", ".join(names)), tr(meaning)) for meaning, names in keys_by_meaning().items()]
+        rows = *names, *((tr(gesture), tr(meaning)) for gesture, meaning in GESTURES)
         line = imgui.get_text_line_height() / theme.TEXT_SIZE
         fitting = (s for s in _SIZES if (len(rows) + _AROUND) * line * s <= room.y)
         with look.font(look.text, next(fitting, _SIZES[-1])):
@@ -422,7 +423,7 @@ class PictureKeys:
 
     def _take(self, takes: bool) -> None:
         if takes and not self.has_keyboard:
-            self.bench.notices.say("the picture has the keyboard; Esc gives it back")
+            self.bench.notices.say(tr("the picture has the keyboard; Esc gives it back"))
         self.has_keyboard = takes
 
     def _is_own(self, key: imgui.Key) -> bool:

@@ -8,6 +8,7 @@ the English words are shown, and a test names them. Words with numbers in them a
 from __future__ import annotations
 
 import locale
+import re
 import tomllib
 from functools import cache
 from pathlib import Path
@@ -32,10 +33,15 @@ def choose_language(code: str) -> str:
     return _chosen
 
 
-def tr(text: str, **values: object) -> str:
+def tr(text: str, /, **values: object) -> str:
     """Return words of the window in the language that is in use, with values in the place of their names."""
     words = _translations(_chosen).get(text, text) if _chosen != "en" else text
     return words.format(**values) if values else words
+
+
+def tr_label(text: str) -> str:
+    """Return a label or a title that a sketch or a kernel has, translated where it is a shipped one."""
+    return _translations("fr labels").get(text, text) if _chosen == "fr" else text
 
 
 def counted(number: int, noun: str) -> str:
@@ -45,7 +51,12 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {tr(noun if number in (0, 1) else f'{noun}s')}"
 
 
+def shortcut(keys: str) -> str:
+    """Return the keys of a shortcut as keyboards of the language have them: "Ctrl+Shift+Z", "Ctrl+Maj+Z"."""
+    return re.sub(r"[A-Z]\w+", lambda word: tr(word[0]), keys)
+
+
 @cache
 def _translations(code: str) -> dict[str, str]:
-    names = {"fr": "french.toml"}
+    names = {"fr": "french.toml", "fr labels": "french_labels.toml"}
     return tomllib.loads((Path(__file__).parent / names[code]).read_text("utf-8"))

@@ -17,6 +17,7 @@ from playground.studio.inspect.inspector import Inspector
 from playground.studio.inspect.panel import draw_values
 from playground.studio.keyframes.panel import draw_timeline
 from playground.studio.land.panel import draw_exaggeration
+from playground.studio.language import tr, tr_label
 from playground.studio.notices import Notices
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -67,13 +68,13 @@ def _bar(fraction: float, left: float, corner: ImVec2, look: Theme) -> None:
 def behind_text(done: int, total: int, source: str = "") -> str:
     """Return "computing frame 1,200 of 36,000 …", or of a source "making height … 34 %"."""
     if source:
-        return f"making {source} … {done * 100 // total} %"
-    return f"computing frame {done:,} of {total:,} …"
+        return tr("making {source} … {percent} %", source=source, percent=done * 100 // total)
+    return tr("computing frame {done} of {total} …", done=f"{done:,}", total=f"{total:,}")
 
 
 def checking_text(subject: str, seconds: float) -> str:
     """Return "checking terrain.glsl … 3 s"."""
-    return f"checking {subject} …" + (f" {int(seconds)} s" if seconds >= 1 else "")
+    return tr("checking {subject} …", subject=subject) + (f" {int(seconds)} s" if seconds >= 1 else "")
 
 
 def draw_notices(notices: Notices, look: Theme, area: Area) -> None:
@@ -153,7 +154,6 @@ def _inspect(
 
 
 _DROPPED = "dropped"
-_OWN_SKETCH = "Into a sketch of its own"
 
 
 def draw_drops(drops: Drops, look: Theme) -> None:
@@ -169,9 +169,9 @@ def draw_drops(drops: Drops, look: Theme) -> None:
         drops.waiting = []  # a click outside closed it
         return
     with look.font(look.bold):
-        imgui.text_unformatted(f"Put {drops.waiting[0].name} where?")
+        imgui.text_unformatted(tr("Put {file} where?", file=drops.waiting[0].name))
     draft = drops.actions.session.shown
-    if is_terrain(drops.waiting[0]) and imgui.selectable(_OWN_SKETCH, False)[0]:
+    if is_terrain(drops.waiting[0]) and imgui.selectable(tr("Into a sketch of its own"), False)[0]:
         drops.open()
     for taker in drops.channels(drops.waiting[0]) if drops.waiting else ():
         if imgui.selectable(f"{taker.channel.path}##channel {taker.channel.path}", False)[0]:
@@ -179,11 +179,11 @@ def draw_drops(drops: Drops, look: Theme) -> None:
             break
         if draft is not None:
             imgui.same_line(0, 2 * imgui.get_style().item_spacing.x)
-            imgui.text_disabled(f"now {source_label(draft.base, taker.channel.source)}")
+            imgui.text_disabled(tr("now {value}", value=source_label(draft.base, taker.channel.source)))
     for path, parameter, now in drops.parameters(drops.waiting[0]) if drops.waiting else ():
-        if imgui.selectable(f"{parameter.title}   {path}##{path}", False)[0]:
+        if imgui.selectable(f"{tr_label(parameter.title)}   {path}##{path}", False)[0]:
             drops.put(path)
             break
         if now:
-            imgui.set_item_tooltip(f"now {now}")
+            imgui.set_item_tooltip(tr("now {value}", value=now))
     imgui.end_popup()

@@ -22,6 +22,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
+from playground.studio.language import tr
+
 VARIABLES = ("PLAYGROUND_EDITOR", "VISUAL", "EDITOR")
 BUILT_IN = "builtin"
 MARK = "{file}"
@@ -163,18 +165,21 @@ def _named_by(
         try:
             words = [word.strip('"') for word in shlex.split(command, posix=platform != "win32")]
         except ValueError as error:
-            return None, f"is not a command: {error}"
+            return None, tr("is not a command: {error}", error=error)
         if not words:
-            return None, "names no program"
+            return None, tr("names no program")
         result = which(words[0])
         if result is None:
-            return None, f"names {words[0]}, which is not installed"
+            return None, tr("names {program}, which is not installed", program=words[0])
         words[0] = result
     name = _stem(words[0])
     if name in IN_A_TERMINAL or (name in ("emacs", "emacsclient") and {"-nw", "-t"} & set(words)):
         terminal = find_terminal(environ, which)
         if not terminal:
-            return None, f"names {name}, and there is no terminal to open it in; $TERMINAL can name one"
+            return None, tr(
+                "names {program}, and there is no terminal to open it in; $TERMINAL can name one",
+                program=name,
+            )
         return Editor(tuple(words), terminal), ""
     return Editor(tuple(words)), ""
 
@@ -208,7 +213,7 @@ class Opener:
         try:
             command = editor.command(file, line, column)
         except ValueError as error:
-            self.notes.append(f"{editor.name} was not started: {error}")
+            self.notes.append(tr("{editor} was not started: {error}", editor=editor.name, error=error))
             return False
         errors = tempfile.TemporaryFile()
         try:
@@ -223,7 +228,9 @@ class Opener:
         except (OSError, ValueError) as error:
             errors.close()
             reason = getattr(error, "strerror", None) or str(error)
-            self.notes.append(f"{editor.name} could not be started: {reason}")
+            self.notes.append(
+                tr("{editor} could not be started: {reason}", editor=editor.name, reason=reason)
+            )
             return False
 
         def wait() -> None:
@@ -231,8 +238,15 @@ class Opener:
             if status != 0:
                 errors.seek(max(errors.seek(0, os.SEEK_END) - _TAIL_BYTES, 0))
                 text = errors.read().decode("utf-8", "replace").strip()
-                last = text.splitlines()[-1].strip()[:200] if text else "it gave no reason"
-                self.notes.append(f"{editor.name} ended with status {status}: {last}")
+                last = text.splitlines()[-1].strip()[:200] if text else tr("it gave no reason")
+                self.notes.append(
+                    tr(
+                        "{editor} ended with status {status}: {last}",
+                        editor=editor.name,
+                        status=status,
+                        last=last,
+                    )
+                )
                 self._wake()
             errors.close()
 

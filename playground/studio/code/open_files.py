@@ -60,7 +60,7 @@ class OpenText:
 
     def saved(self) -> str:
         """Return the notice after a save."""
-        return f"saved {self.title}"
+        return tr("saved {file}", file=self.title)
 
     @classmethod
     def read(cls, path: Path) -> OpenText:
@@ -254,7 +254,7 @@ class OpenFiles:
         ``here``: in the code pane.
         """
         if not path.is_file():
-            self.notices.say(f"there is no file {shown(path)} to open")
+            self.notices.say(tr("there is no file {file} to open", file=shown(path)))
             return
         copy = self.copy_of(path)
         open_file = copy or self.at(path)
@@ -263,7 +263,7 @@ class OpenFiles:
             if complaint:
                 self.notices.say(complaint)
             if editor is not None and self.opener.open(editor, path, line, column):
-                self.notices.say(f"opened {shown(path)} in {editor.name}")
+                self.notices.say(tr("opened {file} in {editor}", file=shown(path), editor=editor.name))
                 return
         if open_file is None:
             try:
@@ -479,7 +479,7 @@ class OpenFiles:
         if problems.all:
             self.open_problem(problems.all[max(problems.at, 0)], here=here)
         else:
-            self.notices.say("no errors, so nothing to edit")
+            self.notices.say(tr("no errors, so nothing to edit"))
 
     def open_place(self, location: str) -> None:
         """Open "file:line", as an include chain has it."""

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.textures import make_texture
-from playground.errors import counted
 from playground.paths import SKETCHES
 from playground.shader.colours import linear_to_srgb
 from playground.shader.own_shaders import own_shader
@@ -25,6 +24,7 @@ from playground.sketch.model import Sketch
 from playground.sketch.wiring import input_names
 from playground.studio.graph.edits import Catalogue, Entry, outputs_of
 from playground.studio.graph.layout import Edge, Layout, layout_of, nearest_node
+from playground.studio.language import counted
 from playground.studio.picture.full_screen import TexelShader
 from playground.studio.session import Session, Version
 from playground.studio.start.thumbnails import place_of, read_atlas, thumbnails

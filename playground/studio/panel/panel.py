@@ -13,7 +13,6 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.errors import counted
 from playground.paths import shown
 from playground.shader.parameter import spell, write
 from playground.sketch.model import Preset, Sketch
@@ -47,7 +46,7 @@ from playground.studio.inspect.panel import draw_spread
 from playground.studio.interface import TypedAhead
 from playground.studio.keyframes.panel import KeyframeList
 from playground.studio.keys import all_keys
-from playground.studio.language import tr
+from playground.studio.language import counted, shortcut, tr, tr_label
 from playground.studio.paint.panel import draw_paintbox
 from playground.studio.panel.parameter_list import Filter, PanelState, items_of, set_words, shown_values
 from playground.studio.panel.passes_panel import Sections
@@ -119,19 +118,19 @@ def _map(session: Session, inspection: Inspection, look: Theme) -> None:
         return
     for parameter in shown.kernel.parameters:
         path, value = f"map.{parameter.name}", shown.value(parameter.name)
-        with row(parameter.title, explanation(parameter, path)):
+        with row(tr_label(parameter.title), explanation(parameter, path)):
             changed = draw_value(parameter, value, WidgetSlot(f"##{path}", look.scale, Path()))
         if changed is not None:
             session.view.set_map(parameter.name, changed)
-    if imgui.button("Fit to the values"):
+    if imgui.button(tr("Fit to the values")):
         session.fit_map()
     draw_spread(session, inspection, look)
 
 
 def _footer_lines(orbits: bool) -> tuple[str, str]:
     """Return the lines at the bottom: what the mouse does, and the keys used most."""
-    mouse = "Drag to orbit, Shift to pan, Ctrl for the sun, wheel to zoom" if orbits else ""
-    return mouse, "   ".join(f"{key.name} {key.brief}" for key in all_keys() if key.brief)
+    mouse = tr("Drag to orbit, Shift to pan, Ctrl for the sun, wheel to zoom") if orbits else ""
+    return mouse, "   ".join(f"{shortcut(key.name)} {tr(key.brief)}" for key in all_keys() if key.brief)
 
 
 def _footer_height(lines: tuple[str, str], look: Theme) -> float:
@@ -152,7 +151,6 @@ def _footer(lines: tuple[str, str], look: Theme) -> None:
 # ── the head ──────────────────────────────────────────────────────────────────
 
 
-_OWN_VIEW = "its own view"
 _CLOSER = 2.5  # [units of scale 1]
 _LISTED = 14  # steps of the history that show without scrolling
 
@@ -162,19 +160,21 @@ def draw_head(memory: PanelState, bench: Workbench, look: Theme) -> None:
     session, sketch = bench.session, bench.session.sketch
     path = session.drafts.shown_path
     with look.font(look.bold, theme.TEXT_SIZE + 2):
-        imgui.text_wrapped((sketch.title.strip() if sketch else "") or path.stem)
+        imgui.text_wrapped((tr_label(sketch.title.strip()) if sketch else "") or path.stem)
     with look.font(look.text, theme.SMALL):
         style = imgui.get_style()
         room = imgui.get_content_region_avail().x
         buttons = [addition for addition in bench.additions if addition.button]
-        widths = [imgui.calc_text_size(addition.button).x + 2 * style.frame_padding.x for addition in buttons]
+        widths = [
+            imgui.calc_text_size(tr(addition.button)).x + 2 * style.frame_padding.x for addition in buttons
+        ]
         wide = sum(widths) + style.item_spacing.x * max(len(buttons) - 1, 0)
         start = imgui.get_cursor_pos_x()
         imgui.text_disabled(fitting_path(shown(path), room - wide - style.item_spacing.x))
         imgui.set_item_tooltip(str(path))
         for at, addition in enumerate(buttons):
             imgui.same_line(*() if at else (start + room - wide,))
-            if button(addition.button, addition.button_note, small=True):
+            if button(tr(addition.button), tr(addition.button_note), small=True):
                 addition.toggle()
     if sketch is None:
         return
@@ -197,7 +197,7 @@ def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
         imgui.same_line()
         _randomise(memory, bench.actions)
         imgui.same_line()
-        if button("A/B", "Keep this as A, go on with B, and compare the two; or no longer (A)"):
+        if button("A/B", tr("Keep this as A, go on with B, and compare the two; or no longer (A)")):
             bench.inspection.compare.toggle()
         _resets(bench.actions)
         imgui.same_line()
@@ -205,20 +205,22 @@ def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
         imgui.same_line()
         _saves(memory, bench.actions)
         imgui.same_line()
-        if button("PNG", f"Save the picture as a new file in {bench.actions.folder} (S)"):
+        if button("PNG", tr("Save the picture as a new file in {folder} (S)", folder=bench.actions.folder)):
             bench.actions.save_picture()
         imgui.same_line()
-        if button("Graph", "The passes as a graph, or no longer (G)"):
+        if button(tr("Graph"), tr("The passes as a graph, or no longer (G)")):
             bench.toggle_passes()
         imgui.same_line()
-        if button("Trace", "Every value of the texel under the mouse beside the code, or no longer (T)"):
+        if button(
+            tr("Trace"), tr("Every value of the texel under the mouse beside the code, or no longer (T)")
+        ):
             bench.tracing.toggle()
 
 
 def draw_search(memory: PanelState, ahead: TypedAhead) -> None:
     """Draw the search, and the switch that leaves only what is changed."""
     style = imgui.get_style()
-    only = "Changed"
+    only = tr("Changed")
     wide = imgui.calc_text_size(only).x + imgui.get_frame_height() + style.item_inner_spacing.x
     if memory.focus_search:
         imgui.set_keyboard_focus_here()
@@ -226,12 +228,12 @@ def draw_search(memory: PanelState, ahead: TypedAhead) -> None:
     imgui.set_next_item_width(-wide - style.item_spacing.x)
     flags = imgui.InputTextFlags_.escape_clears_all
     typed = letters()
-    _, text = imgui.input_text_with_hint("##search", "Search  /", memory.filter.search, flags)
+    _, text = imgui.input_text_with_hint("##search", tr("Search  /"), memory.filter.search, flags)
     text = with_typed_ahead(ahead, text, memory.filter.search, typed)
-    imgui.set_item_tooltip("By label, name, pass, group or description; Esc ends it")
+    imgui.set_item_tooltip(tr("By label, name, pass, group or description; Esc ends it"))
     imgui.same_line()
     _, changed = imgui.checkbox(f"{only}##only", memory.filter.changed)
-    imgui.set_item_tooltip("Only what differs from the file")
+    imgui.set_item_tooltip(tr("Only what differs from the file"))
     if (text, changed) != (memory.filter.search, memory.filter.changed):
         memory.filter = Filter(text, changed)
 
@@ -242,11 +244,11 @@ def draw_search(memory: PanelState, ahead: TypedAhead) -> None:
 def _undo(memory: PanelState, undo: Undo, look: Theme) -> None:
     history, paints = undo.history, undo.painting.on
     buttons(
-        ("Undo", "Ctrl+Z", undo.undo, history.can_undo or paints),
-        ("Redo", "Ctrl+Shift+Z, Ctrl+Y", undo.redo, history.can_redo or paints),
+        (tr("Undo"), shortcut("Ctrl+Z"), undo.undo, history.can_undo or paints),
+        (tr("Redo"), shortcut("Ctrl+Shift+Z, Ctrl+Y"), undo.redo, history.can_redo or paints),
     )
     imgui.same_line()
-    with menu("History", "history", "Every step; click on one to go there") as opened:
+    with menu(tr("History"), "history", tr("Every step; click on one to go there")) as opened:
         if opened:
             draw_history(memory, undo, look)
 
@@ -258,16 +260,18 @@ def draw_history(memory: PanelState, undo: Undo, look: Theme) -> None:
     lines = min(len(history.steps) + 1, _LISTED)
     wide, high = min(300 * look.scale, room.x - 60), lines * imgui.get_frame_height() + 10
     imgui.begin_child("steps", ImVec2(wide, min(high, room.y - 120)))
-    if imgui.selectable("As it was opened" if len(history.steps) < 200 else "Before", history.done == 0)[0]:
+    if imgui.selectable(
+        tr("As it was opened") if len(history.steps) < 200 else tr("Before"), history.done == 0
+    )[0]:
         undo.go_to(0)
 
     def name_of(path: str) -> str:
         item = items.get(path)
-        return item.parameter.title if item else path
+        return tr_label(item.parameter.title) if item else path
 
     def written(path: str, value: object) -> str:
         if value is None:
-            return "the file's"
+            return tr("the file's")
         item = items.get(path)
         return write(item.parameter, value) if item else spell(value)  # type: ignore[arg-type]
 
@@ -286,34 +290,36 @@ def draw_history(memory: PanelState, undo: Undo, look: Theme) -> None:
 
 
 def _randomise(memory: PanelState, actions: Actions) -> None:
-    with menu("Random", "random", "Random values, from a seed") as opened:
+    with menu(tr("Random"), "random", tr("Random values, from a seed")) as opened:
         if opened:
             _random_values(memory, actions)
 
 
 def _random_values(memory: PanelState, actions: Actions) -> None:
     draft = actions.session.shown
-    _, memory.seed = imgui.input_int("Seed", memory.seed)
+    _, memory.seed = imgui.input_int(tr("Seed"), memory.seed)
     strength = slide("##strength", memory.strength, (0.01, 0.5), "%.2f")
     memory.strength = memory.strength if strength is None else strength
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
-    imgui.text_unformatted("Strength")
-    imgui.set_item_tooltip("Of a mutation: how far a value goes, in fractions of its range")
+    imgui.text_unformatted(tr("Strength"))
+    imgui.set_item_tooltip(tr("Of a mutation: how far a value goes, in fractions of its range"))
     with disabled(bool(memory.filter)):
-        _, memory.everything = imgui.checkbox("Everything", memory.everything)
-    imgui.set_item_tooltip("Also colours, light, the view and what reads files; else the shape alone")
+        _, memory.everything = imgui.checkbox(tr("Everything"), memory.everything)
+    imgui.set_item_tooltip(tr("Also colours, light, the view and what reads files; else the shape alone"))
     chosen, what = targets(draft, memory.filter, everything=memory.everything)
     if draft is not None:
         values = shown_values(draft)
-        if button("Random values"):
-            actions.set_all(f"Random, seed {memory.seed}", at_random(chosen, memory.seed))
+        if button(tr("Random values")):
+            actions.set_all(tr("Random, seed {seed}", seed=memory.seed), at_random(chosen, memory.seed))
             memory.seed += 1
         imgui.same_line()
-        if button("Mutate"):
+        if button(tr("Mutate")):
             near = mutated(chosen, values.of, memory.seed, memory.strength)
-            actions.set_all(f"Mutation, seed {memory.seed}", near)
+            actions.set_all(tr("Mutation, seed {seed}", seed=memory.seed), near)
             memory.seed += 1
-    imgui.text_disabled(f"{counted(len(chosen), 'parameter')}: {what}")
+    imgui.text_disabled(
+        tr("{parameters}: {which}", parameters=counted(len(chosen), "parameter"), which=tr(what))
+    )
 
 
 # ── resets, copies, saves ────────────────────────────────────────────────────
@@ -321,40 +327,40 @@ def _random_values(memory: PanelState, actions: Actions) -> None:
 
 def _resets(actions: Actions) -> None:
     session = actions.session
-    with menu("Reset", "resets", "Back to what the file says") as opened:
+    with menu(tr("Reset"), "resets", tr("Back to what the file says")) as opened:
         if not opened:
             return
         edits = session.shown.edits if session.shown else Edits()
         touched = bool(edits.values or edits.techniques or edits.channels or session.view.steps)
-        if imgui.menu_item_simple("View", "R", False, edits.camera is not None):
+        if imgui.menu_item_simple(tr("View"), "R", False, edits.camera is not None):
             session.drafts.set_camera(None)
-        if imgui.menu_item_simple("All values and techniques", "", False, touched):
+        if imgui.menu_item_simple(tr("All values and techniques"), "", False, touched):
             actions.reset_values()
-        if imgui.menu_item_simple("Locks", "", False, bool(edits.locked)):
+        if imgui.menu_item_simple(tr("Locks"), "", False, bool(edits.locked)):
             for path in edits.locked:
                 session.drafts.lock(path, False)
 
 
 def _copies(memory: PanelState, actions: Actions) -> None:
-    with menu("Copy", "copies", "What differs from the file, to the clipboard") as opened:
+    with menu(tr("Copy"), "copies", tr("What differs from the file, to the clipboard")) as opened:
         if not opened:
             return
         draft = actions.session.shown
-        if draft is not None and imgui.menu_item_simple("As --set words", "", False, bool(draft.applied)):
+        if draft is not None and imgui.menu_item_simple(tr("As --set words"), "", False, bool(draft.applied)):
             text = set_words(draft)
             imgui.set_clipboard_text(text)
-            actions.notices.say(f"copied {fitting(text, 320.0)}")
-        if imgui.menu_item_simple("As TOML"):
+            actions.notices.say(tr("copied {text}", text=fitting(text, 320.0)))
+        if imgui.menu_item_simple(tr("As TOML")):
             actions.copy_toml(imgui.set_clipboard_text)
 
 
 def _saves(memory: PanelState, actions: Actions) -> None:
-    with menu("Save", "saves", "What differs from the file, into the file") as opened:
+    with menu(tr("Save"), "saves", tr("What differs from the file, into the file")) as opened:
         if opened:
-            if imgui.menu_item_simple("Into the sketch", "Ctrl+S"):
+            if imgui.menu_item_simple(tr("Into the sketch"), "Ctrl+S"):
                 actions.save_values()
-            is_copy = actions.copy_is[0] == "Save a copy"
-            if imgui.menu_item_simple("As a copy in the current folder" if is_copy else "As a new sketch"):
+            here, new = tr("As a copy in the current folder"), tr("As a new sketch")
+            if imgui.menu_item_simple(here if actions.copy_is[0] == tr("Save a copy") else new):
                 actions.save_a_copy()
             imgui.separator()
             _preset_to_save(memory, actions)
@@ -367,7 +373,7 @@ def _saves(memory: PanelState, actions: Actions) -> None:
         if done:
             actions.save_a_copy()
         imgui.same_line()
-        if button("Cancel") or done:
+        if button(tr("Cancel")) or done:
             actions.file.offer = ""
             imgui.close_current_popup()
         imgui.end_popup()
@@ -376,11 +382,11 @@ def _saves(memory: PanelState, actions: Actions) -> None:
 def _preset_to_save(memory: PanelState, actions: Actions) -> None:
     imgui.set_next_item_width(imgui.get_font_size() * 9)
     enter = imgui.InputTextFlags_.enter_returns_true
-    hint = "name of a preset"
+    hint = tr("name of a preset")
     entered, memory.preset_name = imgui.input_text_with_hint("##name", hint, memory.preset_name, enter)
     imgui.same_line()
     name = memory.preset_name.strip()
-    if button("Save preset", enabled=bool(name)) or (entered and name):
+    if button(tr("Save preset"), enabled=bool(name)) or (entered and name):
         actions.save_as_preset(name)
         memory.preset = name
         imgui.close_current_popup()
@@ -395,11 +401,11 @@ def _presets(sketch: Sketch, memory: PanelState, actions: Actions) -> None:
         memory.preset = active.name
     last = next((p for p in sketch.presets if p.name == memory.preset), None)
     off = _differing(sketch, last) if last is not None and active is None else []
-    note = "Values that go together"
+    note = tr("Values that go together")
     if off and last is not None:
-        note += f"\nChanged since {last.name}: {', '.join(off)}"
-    with row("Preset", note, edited=bool(off), fixed=True):
-        text = active.name if active else f"{last.name}, changed" if last else "choose"
+        note += "\n" + tr("Changed since {name}: {paths}", name=last.name, paths=", ".join(off))
+    with row(tr("Preset"), note, edited=bool(off), fixed=True):
+        text = active.name if active else tr("{name}, changed", name=last.name) if last else tr("choose")
         preset = choose("##preset", fitting_choice(text), sketch.presets, active, name=lambda p: p.name)
         imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
         _preset_order(sketch, actions)
@@ -444,9 +450,9 @@ def _shown_texture(session: Session) -> None:
     current = session.view.map.ref if session.view.map else ""
 
     def name(ref: str) -> str:
-        return ref_name(ref) if ref else _OWN_VIEW
+        return ref_name(ref) if ref else tr("its own view")
 
-    with row("Show", "The sketch's own view, or any texture seen from above (M)", fixed=True):
+    with row(tr("Show"), tr("The sketch's own view, or any texture seen from above (M)"), fixed=True):
         ref = choose("##shown", fitting_choice(name(current)), ["", *session.refs], current, name=name)
     if ref is not None:
         session.show(ref or None)
