@@ -178,22 +178,33 @@ def coerce(parameter: Parameter, value: object, path: str = "") -> Value:
     return result
 
 
-def expected(parameter: Parameter) -> str:
-    """Return in a few words what a parameter takes."""
+def expected(parameter: Parameter, say: Callable[..., str] = str.format) -> str:
+    """Return in a few words what a parameter takes; ``say`` fills a template, and may translate it."""
     widget = parameter.widget
     if widget.choices:
-        return "one of " + ", ".join(widget.choices)
+        return say("one of {choices}", choices=", ".join(widget.choices))
     if words := widget.facts.expects:
-        return words
+        return say(words)
     if widget.kind == "point":
-        ranges = [f"from {low:g} to {high:g}" for low, high in map(_ends(widget), range(2))]
+        ranges = [
+            say("from {low} to {high}", low=f"{low:g}", high=f"{high:g}")
+            for low, high in map(_ends(widget), range(2))
+        ]
         middles = [f"{(low + high) / 2:g}" for low, high in map(_ends(widget), range(2))]
-        return f"two numbers {' and '.join(dict.fromkeys(ranges))}, as {','.join(middles)}"
+        both = say(" and ").join(dict.fromkeys(ranges))
+        return say("two numbers {ranges}, as {example}", ranges=both, example=",".join(middles))
     count = length_of(parameter.type)
-    noun = "whole number" if is_whole(parameter.type) else "number"
-    what = f"a {noun}" if count == 1 else f"{count} {noun}s, as " + ",".join(["1"] * count)
+    if count == 1:
+        what = say("a whole number") if is_whole(parameter.type) else say("a number")
+    else:
+        many = (
+            "{count} whole numbers, as {example}"
+            if is_whole(parameter.type)
+            else "{count} numbers, as {example}"
+        )
+        what = say(many, count=count, example=",".join(["1"] * count))
     if widget.low is not None and widget.high is not None:
-        what += f" from {widget.low:g} to {widget.high:g}"
+        what += " " + say("from {low} to {high}", low=f"{widget.low:g}", high=f"{widget.high:g}")
     return what
 
 

@@ -44,6 +44,11 @@ def tr_label(text: str) -> str:
     return _translations("fr labels").get(text, text) if _chosen == "fr" else text
 
 
+def labels_of(text: str) -> tuple[str, str]:
+    """Return a label in every language, the English one first, for a search in all of them."""
+    return text, _translations("fr labels").get(text, "")
+
+
 def counted(number: int, noun: str) -> str:
     """Return "1 file", "2 files" in the language that is in use; in French 0 is singular too."""
     if _chosen == "en":

@@ -29,6 +29,7 @@ from playground.sketch.model import Parameter, Value
 from playground.studio import theme
 from playground.studio.channels.channels import IMAGES
 from playground.studio.draw import choose, fitting_choice
+from playground.studio.language import tr, tr_label
 from playground.studio.panel.values import format_of, snapped, unit_of
 
 # ── directions ────────────────────────────────────────────────────────────────
@@ -242,13 +243,20 @@ def explanation(parameter: Parameter, path: str) -> str:
     lines = [parameter.tooltip] if parameter.tooltip else []
     in_words = parameter.widget.choices or parameter.widget.facts.expects
     unit = "" if in_words else unit_of(parameter)
-    default = write(parameter, parameter.default) or "none"
-    lines.append(f"Takes {expected(parameter)}{unit}; by default {default}{unit}.")
+    default = write(parameter, parameter.default) or tr("none")
+    lines.append(
+        tr(
+            "Takes {values}{unit}; by default {default}{unit}.",
+            values=expected(parameter, tr),
+            unit=unit,
+            default=default,
+        )
+    )
     if parameter.step:
-        lines.append(f"In steps of {parameter.step:g}{unit}.")
+        lines.append(tr("In steps of {step}{unit}.", step=f"{parameter.step:g}", unit=unit))
     if names := part_names(parameter):
         if parameter.widget.facts.control == "numbers":
-            lines.append(f"Its parts: {', '.join(names)}.")
+            lines.append(tr("Its parts: {names}.", names=", ".join(map(tr_label, names))))
     declared = f"uniform {parameter.type} {parameter.name}"
     lines.append(f"{declared}, {shown(parameter.file)}:{parameter.line}" if parameter.file else declared)
     return "\n".join([*lines, path])
@@ -268,12 +276,12 @@ def _checkbox(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | N
 
 
 def _button(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
-    pressed = imgui.button(f"{parameter.title}{slot.label}", ImVec2(imgui.calc_item_width(), 0))
+    pressed = imgui.button(f"{tr_label(parameter.title)}{slot.label}", ImVec2(imgui.calc_item_width(), 0))
     return True if pressed else None
 
 
 def _menu(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
-    choices = parameter.widget.choices
+    choices = [tr_label(choice) for choice in parameter.widget.choices]
     now = int(value) if isinstance(value, int) and 0 <= value < len(choices) else 0
     shown = fitting_choice(choices[now])
     chosen = choose(slot.label, shown, range(len(choices)), now, name=choices.__getitem__)
@@ -324,14 +332,14 @@ def _direction(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | 
         result = (round(direction_picked[0], 1), round(direction_picked[1], 1))
     imgui.same_line()
     imgui.begin_group()
-    _name("azimuth")
+    _name(tr("azimuth"))
     imgui.set_next_item_width(field)
     turned, azimuth = imgui.drag_float(f"{slot.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
-    imgui.set_item_tooltip("Azimuth: clockwise from north")
-    _name("elevation")
+    imgui.set_item_tooltip(tr("Azimuth: clockwise from north"))
+    _name(tr("elevation"))
     imgui.set_next_item_width(field)
     raised, elevation = imgui.drag_float(f"{slot.label}-elevation", elevation, 0.25, -90, 90, "%.1f°", _CLAMP)
-    imgui.set_item_tooltip("Elevation above the horizon")
+    imgui.set_item_tooltip(tr("Elevation above the horizon"))
     imgui.end_group()
     return (tidied(azimuth), tidied(elevation)) if turned or raised else result
 
@@ -430,8 +438,8 @@ def _file(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
             if imgui.selectable(name, name == text)[0]:
                 chosen = name
         if not names:
-            none = "images or elevation files" if slot.endings == IMAGES else ", ".join(slot.endings)
-            imgui.text_disabled(f"no {none} next to the sketch")
+            none = tr("images or elevation files") if slot.endings == IMAGES else ", ".join(slot.endings)
+            imgui.text_disabled(tr("no {files} next to the sketch", files=none))
         imgui.end_combo()
     if chosen is not None:
         return chosen

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from playground.engine.cache_keys import StepKey
 from playground.engine.execution import FrameRecord, why
+from playground.studio.language import tr
 
 LENGTH = 240
 """Pictures that are recorded."""
@@ -127,8 +128,10 @@ class RunReasons:
         """Return why a pass ran last, of a technique a line for each pass inside; "" where none ran yet."""
         inside = [path for path in self._latest if path == node or path.startswith(f"{node}.")]
         lines = [
-            f"{'Last' if path == node else f'{path[len(node) + 1 :]} last'} ran: {why(*self._latest[path])}"
+            (tr("Last ran: {why}") if path == node else tr("{path} last ran: {why}")).format(
+                path=path[len(node) + 1 :], why=why(*self._latest[path])
+            )
             for path in inside[:_MAX_LINES]
         ]
         more = len(inside) - len(lines)
-        return "\n".join([*lines, f"and {more} more"] if more else lines)
+        return "\n".join([*lines, tr("and {more} more", more=more)] if more else lines)

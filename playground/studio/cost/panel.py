@@ -78,26 +78,28 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
     imgui.spacing()
     if inspection.costs_asked:
         imgui.set_next_item_open(True)
-    opened = header("Cost###costs", look)
+    opened = header(f"{tr('Cost')}###costs", look)
     if inspection.costs_asked:
         inspection.costs_asked = False
         imgui.set_scroll_here_y(0.0)
     if not opened:
         return
     inspection.costs_shown = True
-    imgui.text_disabled(f"by {engine.clock}")
+    imgui.text_disabled(tr("by {clock}", clock=tr(engine.clock)))
     imgui.set_item_tooltip(
-        "By the wall clock each pass waits for the one before, so pictures take a little longer"
+        tr("By the wall clock each pass waits for the one before, so pictures take a little longer")
     )
     if session.is_preview:
         across, down = session.picture.drawn_size
-        imgui.text_disabled(f"a preview of {across} x {down} pixels")
-        imgui.set_item_tooltip("While something changes; at rest it is drawn in full")
+        imgui.text_disabled(tr("a preview of {across} x {down} pixels", across=across, down=down))
+        imgui.set_item_tooltip(tr("While something changes; at rest it is drawn in full"))
     if record.pictures:
         _plots(record, look)
     if any_variants(sketch.graph):
-        changed, plain = imgui.checkbox("Plain form", session.drafts.plain)
-        imgui.set_item_tooltip("Every technique by its plain text, no fast variant: slower, nearly the same")
+        changed, plain = imgui.checkbox(tr("Plain form"), session.drafts.plain)
+        imgui.set_item_tooltip(
+            tr("Every technique by its plain text, no fast variant: slower, nearly the same")
+        )
         if changed:
             session.drafts.run_plain(plain)
     own = {spec.name for spec in sketch.graph.passes}
@@ -120,8 +122,14 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
     table("costs", 3, rows, _TABLE)
     compiled = session.last_reload
     if compiled is not None:
-        sandbox = f", {compiled.sandbox * 1e3:.0f} of them the sandbox" if compiled.sandbox else ""
-        imgui.text_disabled(f"files to picture {compiled.seconds * 1e3:.0f} ms{sandbox}")
+        sandbox = (
+            tr(", {value} of them the sandbox", value=f"{compiled.sandbox * 1e3:.0f}")
+            if compiled.sandbox
+            else ""
+        )
+        imgui.text_disabled(
+            tr("files to picture {value} ms{sandbox}", value=f"{compiled.seconds * 1e3:.0f}", sandbox=sandbox)
+        )
     _compiling(engine.runner.compile_times)
 
 
@@ -146,12 +154,25 @@ def _plots(record: Record, look: Theme) -> None:
         colour = theme.packed(PLOT_COLOURS[number % len(PLOT_COLOURS)])
         draw.add_rect_filled(ImVec2(corner.x, top), ImVec2(corner.x + side, top + side), colour, 2)
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 2 * side)
-        text = f"{path}  {sum(spent) / len(spent):.2f} ms, most {max(spent):.2f}"
+        text = tr(
+            "{path}  {value} ms, most {max}",
+            path=path,
+            value=f"{sum(spent) / len(spent):.2f}",
+            max=f"{max(spent):.2f}",
+        )
         imgui.text_unformatted(fitting(text, imgui.get_content_region_avail().x))
     imgui.text_disabled(
-        f"in all {record.whole[-1]:.1f} ms; median of {held}: {np.median(record.whole):.1f} ms"
+        tr(
+            "in all {value} ms; median of {held}: {median} ms",
+            value=f"{record.whole[-1]:.1f}",
+            held=held,
+            median=f"{np.median(record.whole):.1f}",
+        )
     )
-    for name, numbers in (("texels computed", record.texels), ("triangles drawn", record.triangles)):
+    for name, numbers in (
+        (tr("texels computed"), record.texels),
+        (tr("triangles drawn"), record.triangles),
+    ):
         imgui.plot_lines(
             f"##{name}",
             np.array(numbers, np.float32),
@@ -163,7 +184,9 @@ def _plots(record: Record, look: Theme) -> None:
 
 def _compiling(times: Mapping[str, float]) -> None:
     """Draw how long the programs took that the driver compiled, most expensive first."""
-    if not times or not imgui.tree_node_ex(f"Compiling: {sum(times.values()):.0f} ms###compiling"):
+    if not times or not imgui.tree_node_ex(
+        f"{tr('Compiling: {ms} ms', ms=f'{sum(times.values()):.0f}')}###compiling"
+    ):
         return
 
     def name(path: str) -> None:

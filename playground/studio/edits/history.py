@@ -19,6 +19,7 @@ from typing import cast
 
 from playground.sketch.model import Camera, Value
 from playground.studio.edits.edits import Edits
+from playground.studio.language import counted, tr
 
 MOMENT = 0.7
 """[s] within which a change of the same things belongs to the step before."""
@@ -245,21 +246,33 @@ def step_label(step: Step, name_of: Callable[[str], str], write: Callable[[str, 
     kinds = {kind for kind, _ in step.after}
     if "channel" in kinds:  # what else changed belongs to what feeds it
         fed = next((path, source) for (kind, path), source in step.after.items() if kind == "channel")
-        return f"{fed[0]}: {fed[1] if fed[1] is not None else 'what the file feeds it'}"
+        return tr(
+            "{path}: {value}",
+            path=fed[0],
+            value=fed[1] if fed[1] is not None else tr("what the file feeds it"),
+        )
     if len(step.after) != 1:
-        return f"{len(step.after)} parameters" if kinds == {"value"} else f"{len(step.after)} things"
+        return counted(len(step.after), "parameter" if kinds == {"value"} else "thing")
     ((kind, path), after), before = next(iter(step.after.items())), next(iter(step.before.values()))
     if kind == "camera":
-        return "Camera" if after is not None else "Camera back to the file's"
+        return tr("Camera") if after is not None else tr("Camera back to the file's")
     if kind == "time":
-        return f"Time {_seconds(before)} to {_seconds(after)}"
+        return tr("Time {before} to {after}", before=_seconds(before), after=_seconds(after))
     if kind == "technique":
-        return f"{path}: {after}" if after is not None else f"{path}: the file's technique"
+        value = after if after is not None else tr("the file's technique")
+        return tr("{path}: {value}", path=path, value=value)
     if kind == "lock":
-        return f"{'Lock' if after else 'Unlock'} {name_of(path)}"
+        template = tr("Lock {name}") if after else tr("Unlock {name}")
+        return template.format(name=name_of(path))
     if kind == "step":
-        return f"{path}: step {after}" if after is not None else f"{path}: all steps"
-    return f"{name_of(path)}: {write(path, before)} to {write(path, after)}"
+        value = tr("step {number}", number=after) if after is not None else tr("all steps")
+        return tr("{path}: {value}", path=path, value=value)
+    return tr(
+        "{name}: {before} to {after}",
+        name=name_of(path),
+        before=write(path, before),
+        after=write(path, after),
+    )
 
 
 def _filled(state: State, before: State) -> State:

@@ -17,6 +17,7 @@ from playground.shader.parameter import label_of, write
 from playground.sketch.assign import Shown, resolve, shown_parameters, values_of
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.studio.edits.edits import Draft
+from playground.studio.language import labels_of, language, tr, tr_label
 
 
 @dataclass(frozen=True)
@@ -156,17 +157,22 @@ def sections_of(sketch: Sketch) -> tuple[Section, ...]:
 
 def _item(sketch: Sketch, shown: Shown) -> Item:
     p = shown.parameter
-    words = " ".join([p.title, shown.path, shown.path.replace("_", " "), p.group, p.tooltip]).lower()
+    labels = *labels_of(p.title), *labels_of(p.group)
+    words = " ".join([*labels, shown.path, shown.path.replace("_", " "), p.tooltip]).lower()
     leaf = resolve(sketch.graph, shown.path)[0].path
     return Item(shown.path, p, leaf, shown.exported, words, f"##{shown.path}", p.title)
 
 
-@INTERFACE.cached(identities=1, weight=128)
 def main_items(sketch: Sketch) -> tuple[Item, ...]:
     """Return the parameters that a sketch is about, in its order: see ``Sketch.main``.
 
     Group or pass are named where a title alone would not say what is meant.
     """
+    return _main_items(sketch, language())
+
+
+@INTERFACE.cached(identities=1, weight=128)
+def _main_items(sketch: Sketch, _: str) -> tuple[Item, ...]:
     made = []
     named = _items(sketch)
     by_leaf = {item.leaf: item for item in named.values()}  # an inner path may be in the list of an outer one
@@ -181,13 +187,13 @@ def main_items(sketch: Sketch) -> tuple[Item, ...]:
 
 def _with_group(parameter: Parameter) -> str:
     """Return a title as it reads outside its group: a label of one word, as "From", leans on that."""
-    group, title = parameter.group, parameter.title
+    group, title = tr_label(parameter.group), tr_label(parameter.title)
     leans = parameter.label and group and " " not in group + title and title != group
     return _under(group, title) if leans else title
 
 
 def _under(heading: str, title: str) -> str:
-    return f"{heading}: {title[0].lower()}{title[1:]}"
+    return tr("{heading}: {title}", heading=heading, title=f"{title[0].lower()}{title[1:]}")
 
 
 def _groups(items: list[Item]) -> tuple[Group, ...]:

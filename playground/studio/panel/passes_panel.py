@@ -11,7 +11,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.errors import ParameterError, counted
+from playground.errors import ParameterError
 from playground.shader.parameter import label_of, write
 from playground.sketch.model import PassSpec, Sketch, TexelKernel, kernels_of
 from playground.sketch.replace_technique import choices
@@ -40,6 +40,7 @@ from playground.studio.edits.edits import Draft
 from playground.studio.graph.graph import cost_of
 from playground.studio.interface import TypedAhead
 from playground.studio.land.panel import TerrainGroup
+from playground.studio.language import counted, tr, tr_label
 from playground.studio.notices import Notices
 from playground.studio.panel.parameter_list import (
     Group,
@@ -84,7 +85,7 @@ class Rows:
         value, changed = self.values.of[path], path in self.values.changed
         end = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
         top = imgui.get_cursor_screen_pos()
-        with row(item.title, lambda: explanation(parameter, path), edited=changed):
+        with row(tr_label(item.title), lambda: explanation(parameter, path), edited=changed):
             if self.memory.entry == item.label:
                 self._entry(item)
             else:
@@ -106,7 +107,7 @@ class Rows:
                 drafts.lock(path, not locked)
         if changed:
             imgui.same_line(end - slot())
-            if cross(f"{item.label}-reset", "Back to the file's value"):
+            if cross(f"{item.label}-reset", tr("Back to the file's value")):
                 drafts.unset(path)
         if inside and imgui.is_mouse_clicked(1):
             self.memory.menu, self.memory.menu_opens = item.label, True
@@ -123,16 +124,16 @@ class Rows:
             drafts, path = self.session.drafts, item.path
             locked = path in self.values.locked
             imgui.text_disabled(path)
-            if imgui.menu_item_simple("Type a value", "double click"):
+            if imgui.menu_item_simple(tr("Type a value"), tr("double click")):
                 self.open_entry(item)
-            if imgui.menu_item_simple("Reset", "", False, path in self.values.changed):
+            if imgui.menu_item_simple(tr("Reset"), "", False, path in self.values.changed):
                 drafts.unset(path)
-            if imgui.menu_item_simple("Unlock" if locked else "Lock"):
+            if imgui.menu_item_simple(tr("Unlock") if locked else tr("Lock")):
                 drafts.lock(path, not locked)
-            if imgui.menu_item_simple("Copy as --set"):
+            if imgui.menu_item_simple(tr("Copy as --set")):
                 text = f"--set {path}={write(item.parameter, self.values.of[path])}"
                 imgui.set_clipboard_text(text)
-                self.notices.say(f"copied {text}")
+                self.notices.say(tr("copied {text}", text=text))
             if self.controllers is not None:
                 draw_controllers(self.controllers, item)
         imgui.end_popup()
@@ -189,8 +190,8 @@ class Rows:
 
 def _lock(path: str, locked: bool, look: Theme) -> bool:
     """Draw a padlock, open or closed; return whether it is clicked on."""
-    note = "randomising, presets, resets and reloads leave it"
-    note = f"Locked: {note}. Click to unlock" if locked else f"Lock: {note}"
+    note = tr("randomising, presets, resets and reloads leave it")
+    note = tr("Locked: {note}. Click to unlock", note=note) if locked else tr("Lock: {note}", note=note)
     clicked, hovered, middle = slot_button(f"lock {path}", note)
     ink = theme.palette.warm if locked else theme.palette.ink if hovered else theme.palette.dim
     unit, draw = look.scale, imgui.get_window_draw_list()
@@ -229,7 +230,7 @@ class Sections:
             return
         values, sections = shown_values(draft), filtered(draft, memory.filter)
         if memory.filter and not sections:
-            imgui.text_disabled("no parameter is like that")
+            imgui.text_disabled(tr("no parameter is like that"))
         rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, look, bench.controllers)
         reasons = bench.inspection.reasons
         drawing = _Drawing(Path(sketch.folder), rows, bench.actions, bench.files, reasons)
@@ -268,8 +269,8 @@ class Sections:
         chosen = any(name == spec.name for name, _ in draft.edits.techniques)
         chosen = chosen or any(path in mine for path, _ in draft.edits.channels)
         title = spec.technique.title
-        note = f"What fills this pass\n{title}" if title else "What fills this pass"
-        with row("Technique", note, edited=chosen):
+        note = tr("What fills this pass") + (f"\n{tr_label(title)}" if title else "")
+        with row(tr("Technique"), note, edited=chosen):
             # The options are computed in an open list only: that reads every technique there is.
             options = (use for use in self._choices_for(spec.name, draft))
             use = choose("##use", _use_name(spec.use), options, spec.use, flags=_TALL)
@@ -306,9 +307,9 @@ class _Drawing:
         """Draw the parameters that the sketch is about, under a bar of their own."""
         imgui.spacing()
         flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.allow_overlap
-        opened = header("Main parameters###main", self.look, flags)
-        imgui.set_item_tooltip("What this sketch is about, by its own list: main = [...] in its file")
-        self._reset("Main parameters", items)
+        opened = header(f"{tr('Main parameters')}###main", self.look, flags)
+        imgui.set_item_tooltip(tr("What this sketch is about, by its own list: main = [...] in its file"))
+        self._reset(tr("Main parameters"), items)
         if opened:
             self._rows(Group("", items))
 
@@ -333,8 +334,8 @@ class _Drawing:
             position, theme.packed(theme.palette.accent if ran else theme.palette.dim), text
         )
         if imgui.is_item_hovered():
-            lines = ["How often its kernels ran; green: for this very picture"]
-            lines += [self.reasons.text(spec.name), "Right click: its files"]
+            lines = [tr("How often its kernels ran; green: for this very picture")]
+            lines += [self.reasons.text(spec.name), tr("Right click: its files")]
             imgui.set_tooltip("\n".join(filter(None, lines)))
         _files(spec, self.files)
         if section is not None:
@@ -349,7 +350,7 @@ class _Drawing:
         if self.memory.filter:
             imgui.set_next_item_open(True)
         count = sum(len(group.items) for _, groups in section.inner for group in groups)
-        if imgui.tree_node_ex(f"Inside: {count} more###inner"):
+        if imgui.tree_node_ex(f"{tr('Inside: {count} more', count=count)}###inner"):
             for heading, groups in section.inner:
                 if self.memory.filter:
                     imgui.set_next_item_open(True)
@@ -395,7 +396,7 @@ class _Drawing:
             return
         high = imgui.get_item_rect_size().y
         imgui.same_line(imgui.get_window_width() - imgui.get_style().scrollbar_size - slot())
-        note = f"{counted(len(paths), 'parameter')} back to the file's values"
+        note = tr("{parameters} back to the file's values", parameters=counted(len(paths), "parameter"))
         if cross(f"##reset {name}", note, high):
             self.actions.reset(name, paths)
 
@@ -404,13 +405,13 @@ def _files(spec: PassSpec, files: OpenFiles) -> None:
     """Draw the menu of a pass, under its bar: its files, to be opened in an editor."""
     if not imgui.begin_popup_context_item("files"):
         return
-    imgui.text_disabled(f"Files of {spec.name}")
+    imgui.text_disabled(tr("Files of {spec}", spec=spec.name))
     for file in dict.fromkeys(f for _, kernel in kernels_of(spec.technique) for f in kernel.files if f):
         with pushed_id(file):
-            if imgui.menu_item_simple(f"Edit {Path(file).name}", editor_name()):
+            if imgui.menu_item_simple(tr("Edit {file}", file=Path(file).name), editor_name()):
                 files.open(Path(file))
             imgui.set_item_tooltip(file)
-            if editor_name() and imgui.menu_item_simple(f"Edit {Path(file).name} here"):
+            if editor_name() and imgui.menu_item_simple(tr("Edit {file} here", file=Path(file).name)):
                 files.open(Path(file), here=True)
     imgui.end_popup()
 
@@ -424,12 +425,16 @@ def _steps(spec: PassSpec, session: Session) -> None:
         if whole > 0 and (path == spec.name or path.startswith(f"{spec.name}."))
     }
     for path, whole in mine.items():
-        label = "Step" if len(mine) == 1 else f"Step of {path.partition('.')[2]}"
-        note = f"How many of its {counted(whole, 'step')} {path} has run; Ctrl+click to type a number"
+        label = tr("Step") if len(mine) == 1 else tr("Step of {path}", path=path.partition(".")[2])
+        note = tr(
+            "How many of its {steps} {path} has run; Ctrl+click to type a number",
+            steps=counted(whole, "step"),
+            path=path,
+        )
         with row(label, note, edited=path in steps):
 
             def text(now: int, last: int = whole) -> str:
-                return f"all {now}" if now == last else str(now)
+                return tr("all {now}", now=now) if now == last else str(now)
 
             chosen = slide_whole(f"##steps of {path}", steps.get(path, whole), (0, whole), text)
             if chosen is not None:
@@ -437,7 +442,9 @@ def _steps(spec: PassSpec, session: Session) -> None:
     if any(path in steps for path in mine) and any(
         isinstance(k, TexelKernel) and k.between for _, k in kernels_of(spec.technique)
     ):
-        with row("Interpolated", "The heights between the known ones; otherwise texels not reached are 0"):
+        with row(
+            tr("Interpolated"), tr("The heights between the known ones; otherwise texels not reached are 0")
+        ):
             changed, on = imgui.checkbox("##interpolated", session.view.interpolated)
             if changed:
                 session.view.interpolate(on)
