@@ -38,6 +38,7 @@ from playground.sketch.model import (
 )
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import input_names, is_optional, output_names
+from playground.studio.language import tr, tr_label
 
 OUTPUT = "channel_texels"
 FOLDER = "foreign/"
@@ -364,12 +365,12 @@ MEDIA = {"video_file": VIDEO_FILES, "sound_file": SOUND_FILES}
 def source_label(sketch: Sketch, source: str) -> str:
     """Return what a source is called in a list: "noise", "image file", "pass photo"."""
     if not source:
-        return "nothing (black)"
+        return tr("nothing (black)")
     if not is_technique(source):
-        return f"pass {source}"
+        return tr("pass {source}", source=source)
     name = source.rpartition("/")[2].replace("_", " ")
     takes_file = _file_parameter(_technique(sketch, source)) is not None
-    return f"{name} file" if takes_file else name
+    return tr("{name} file", name=name) if takes_file else name
 
 
 def note_of(sketch: Sketch, channel: Channel) -> str:
@@ -377,9 +378,15 @@ def note_of(sketch: Sketch, channel: Channel) -> str:
     if not is_technique(channel.source):
         spec = sketch.graph.find(channel.feeder)
         title = spec.technique.title if spec is not None else ""
-        what = f"the pass {channel.source}" if channel.source else "nothing: it reads black"
-        return "\n".join(filter(None, [f"Fed by {what}", title]))
-    return f"Fed by {channel.source}\n{_technique(sketch, channel.source).title}"
+        what = (
+            tr("the pass {source}", source=channel.source)
+            if channel.source
+            else tr("nothing: it reads black")
+        )
+        return "\n".join(filter(None, [tr("Fed by {what}", what=what), title]))
+    return (
+        tr("Fed by {what}", what=channel.source) + "\n" + tr_label(_technique(sketch, channel.source).title)
+    )
 
 
 def file_of(sketch: Sketch, channel: Channel) -> tuple[str, Parameter] | None:

@@ -21,6 +21,7 @@ from playground.studio.channels.channels import (
 )
 from playground.studio.draw import choose, cross, fitting_choice, row, slot
 from playground.studio.edits.edits import Draft
+from playground.studio.language import tr
 from playground.studio.panel.parameter_list import shown_values
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -59,7 +60,7 @@ class ChannelRows:
         in_file = source_of(draft.file, channel.path)
         if edited and in_file:
             imgui.same_line(end - slot())
-            if cross(f"##reset {channel.path}", "Back to what the file feeds it"):
+            if cross(f"##reset {channel.path}", tr("Back to what the file feeds it")):
                 source = in_file
         if source is not None and source != channel.source:
             session.drafts.feed(channel.path, source)
@@ -71,7 +72,7 @@ class ChannelRows:
             return
         path, parameter = file
         values = shown_values(draft)
-        with row("  file", lambda: explanation(parameter, path), edited=path in values.changed):
+        with row("  " + tr("file"), lambda: explanation(parameter, path), edited=path in values.changed):
             endings = endings_of(draft.base, channel.source)
             position = WidgetSlot(f"##of {channel.path}", look.scale, Path(draft.file.folder), endings)
             new = draw_value(parameter, values.of[path], position)

@@ -23,6 +23,7 @@ from playground.sketch.model import Sketch
 from playground.sketch.traits import is_animated, traits_of
 from playground.studio.edits.edits import Draft, StoredEdits, first_draft
 from playground.studio.edits.memory import Compared
+from playground.studio.language import tr
 from playground.studio.picture.full_screen import Blend, Painter, Picture
 from playground.studio.picture.preview import as_preview
 from playground.studio.picture.shown_picture import pointed_at
@@ -156,12 +157,12 @@ class Compare:
             return False
         self._recalled = None
         if not report.ok:
-            session.notes.append(f"A of the last session is left out: {report.error}")
+            session.notes.append(tr("A of the last session is left out: {error}", error=report.error))
             return True
         try:
             plan = session.engine.plan(draft.sketch, session.plan.frame_size, session.clock.time)
         except PlaygroundError as error:
-            session.notes.append(f"A of the last session is left out: {error}")
+            session.notes.append(tr("A of the last session is left out: {error}", error=error))
             return True
         files = {path: hash_of(path) for path in _files_of(plan)}
         self._set(Stored(session.drafts.shown_path, draft, dict(compared.steps), files))
@@ -182,7 +183,7 @@ class Compare:
     def _take(self, stored: Stored) -> None:
         session = self.session
         if session.shown is not None and stored.draft.file is not session.shown.file:
-            session.notes.append("A is of the files as they were; the next save brings those of now")
+            session.notes.append(tr("A is of the files as they were; the next save brings those of now"))
         session.drafts.show(stored.draft)
         session.view.steps.clear()
         session.view.steps.update(stored.steps)
@@ -256,7 +257,7 @@ class Compare:
                     self._picture.copy(texture, size)
         except Exception as error:
             if not self._reported:
-                session.notes.append(f"A stays as it was drawn last: {error}")
+                session.notes.append(tr("A stays as it was drawn last: {error}", error=error))
             self._reported, self._is_preview = True, False
             return
         self.draws += 1

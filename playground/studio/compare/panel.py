@@ -10,6 +10,7 @@ from playground.studio import theme
 from playground.studio.compare.compare import PERIOD, Compare, Mode
 from playground.studio.draw import OVERLAY, Area, button, choose, window
 from playground.studio.edits.undo import Undo
+from playground.studio.language import tr
 from playground.studio.picture.full_screen import Blend
 from playground.studio.picture.gestures import GRAB_DISTANCE, divider_position
 from playground.studio.theme import Theme
@@ -105,7 +106,7 @@ def _bar(compare: Compare, undo: Undo, look: Theme) -> None:
         imgui.text_colored(theme.colour(theme.palette.warm), f"{letters[compare.mode]:5}")
     imgui.same_line()
     imgui.set_next_item_width(100 * look.scale)
-    mode = choose("##how", compare.mode.value, Mode, compare.mode, name=lambda m: m.value)
+    mode = choose("##how", tr(compare.mode.value), Mode, compare.mode, name=lambda m: tr(m.value))
     compare.mode = mode or compare.mode
     if compare.mode is Mode.DIFFERENCE:
         imgui.same_line()
@@ -113,10 +114,10 @@ def _bar(compare: Compare, undo: Undo, look: Theme) -> None:
         gain = slide("##gain", compare.gain, (1.0, 64.0), "x %.0f", logarithmic=True)
         compare.gain = compare.gain if gain is None else gain
     for label, note, act in (
-        ("Swap", "Go on from A; the current picture becomes A", compare.swap),
-        ("Back to A", "Go on from A, which stays", compare.back),
-        ("Keep", "The current picture becomes A", compare.keep),
-        ("End", "Let A go (A)", compare.end),
+        (tr("Swap"), tr("Go on from A; the current picture becomes A"), compare.swap),
+        (tr("Back to A"), tr("Go on from A, which stays"), compare.back),
+        (tr("Keep"), tr("The current picture becomes A"), compare.keep),
+        (tr("End"), tr("Let A go (A)"), compare.end),
     ):
         imgui.same_line()
         if button(label, note):

@@ -14,6 +14,7 @@ from playground.studio.draw import OVERLAY, Area, button, fitting, table, window
 from playground.studio.inspect.histogram import BINS, STEPS, Histogram, ends_of, ticks
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.inspect.inspector import GroundPoint, PixelReport, Sample
+from playground.studio.language import tr
 from playground.studio.picture.view import View, ref_name
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -32,19 +33,21 @@ def draw_spread(session: Session, inspection: Inspection, look: Theme) -> None:
         return
     if shown.value("channel") != 0:
         _legend(shown, session, inspection, look)
-    if not imgui.tree_node_ex("Histogram###histogram"):
+    if not imgui.tree_node_ex(f"{tr('Histogram')}###histogram"):
         return
     inspection.spread_shown = True
     result = inspection.counter.latest
     if result is None:
-        imgui.text_disabled("counting …")
+        imgui.text_disabled(tr("counting …"))
     else:
         _plot(result, shown, inspection, look)
         _table(result)
         if not result.whole:
-            imgui.text_disabled(fitting(f"of {result.read:,} texels, whole rows of it", 300 * look.scale))
+            imgui.text_disabled(
+                fitting(tr("of {read} texels, whole rows of it", read=f"{result.read:,}"), 300 * look.scale)
+            )
         if not inspection.counter.fresh:
-            imgui.text_disabled("of a moment ago; counting again …")
+            imgui.text_disabled(tr("of a moment ago; counting again …"))
         _ranges(result, session.view)
     imgui.tree_pop()
 
@@ -91,7 +94,7 @@ def _legend(shown: Map, session: Session, inspection: Inspection, look: Theme) -
 
 
 def _plot(histogram: Histogram, shown: Map, inspection: Inspection, look: Theme) -> None:
-    _, logarithmic = imgui.checkbox("Logarithmic", inspection.logarithmic)
+    _, logarithmic = imgui.checkbox(tr("Logarithmic"), inspection.logarithmic)
     inspection.logarithmic = logarithmic
     span = histogram.high - histogram.low
     edges = histogram.low + (np.arange(BINS) + 0.5) * ((span or 1.0) / BINS)
@@ -116,29 +119,34 @@ def _plot(histogram: Histogram, shown: Map, inspection: Inspection, look: Theme)
             ink = ImVec4(*(theme.palette.ink if alone else _INKS[number]), 1.0)
             spec.line_color, spec.fill_color, spec.fill_alpha = ink, ink, 0.25
             heights = np.maximum(channel.bins.astype(np.float64), floor)
-            implot.plot_stairs(_CHANNELS[number], edges, heights, spec)
-            implot.plot_shaded(_CHANNELS[number], edges, heights, floor, spec)
-        implot.plot_inf_lines("range", np.array(ends_of(shown), np.float64), plot_line(0, 1.0))
+            implot.plot_stairs(f"{tr(_CHANNELS[number])}##{number}", edges, heights, spec)
+            implot.plot_shaded(f"{tr(_CHANNELS[number])}##{number}", edges, heights, floor, spec)
+        implot.plot_inf_lines(tr("range"), np.array(ends_of(shown), np.float64), plot_line(0, 1.0))
 
 
 def _table(document: Histogram) -> None:
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
     if not imgui.begin_table("spread", 5, flags):
         return
-    for title in ("", "least", "greatest", "mean", "deviation"):
+    for title in ("", tr("least"), tr("greatest"), tr("mean"), tr("deviation")):
         imgui.table_next_column()
         imgui.text_disabled(title)
     for number, channel in enumerate(document.channels):
         imgui.table_next_row()
         imgui.table_next_column()
-        imgui.text_colored(theme.colour(_INKS[number]), _CHANNELS[number])
+        imgui.text_colored(theme.colour(_INKS[number]), tr(_CHANNELS[number]))
         for value in (channel.lowest, channel.highest, channel.mean, channel.deviation):
             imgui.table_next_column()
-            imgui.text_unformatted("none" if math.isnan(value) else f"{value:.4g}")
+            imgui.text_unformatted(tr("none") if math.isnan(value) else f"{value:.4g}")
     imgui.end_table()
     for number, channel in enumerate(document.channels):
         if channel.nans or channel.infinities:
-            text = f"{_CHANNELS[number]}: {channel.nans:,} NaN, {channel.infinities:,} infinite"
+            text = tr(
+                "{channel}: {nans} NaN, {infinities} infinite",
+                channel=tr(_CHANNELS[number]),
+                nans=f"{channel.nans:,}",
+                infinities=f"{channel.infinities:,}",
+            )
             imgui.text_colored(theme.colour(theme.palette.alarm), text)
 
 
@@ -150,13 +158,13 @@ def _ranges(histogram: Histogram, view: View) -> None:
         return
     mine = histogram.channels[which]
     bounds: tuple[float, float] | None = None
-    if button("All of it", "The map's range from the least to the greatest number"):
+    if button(tr("All of it"), tr("The map's range from the least to the greatest number")):
         bounds = mine.lowest, mine.highest
     imgui.same_line()
-    if button("All but outliers", "Without the least and the greatest 2 in 100"):
+    if button(tr("All but outliers"), tr("Without the least and the greatest 2 in 100")):
         bounds = histogram.between(which, _SHARE)
     imgui.same_line()
-    if button("Around the mean", 'The middle of "cool and warm" is the mean'):
+    if button(tr("Around the mean"), tr('The middle of "cool and warm" is the mean')):
         view.set_map("middle", mine.mean)
     if bounds is not None and bounds[0] < bounds[1]:
         for name, value in zip(("lowest", "highest"), bounds, strict=True):
@@ -193,39 +201,49 @@ def draw_values(report: PixelReport, look: Theme, area: Area) -> None:
 def lines_of(report: PixelReport) -> list[tuple[str, str, theme.Rgb]]:
     """Return the box's lines: a name, what there is, and the colour it is written in."""
     shade = "".join(f"{byte:02x}" for byte in report.picture)
-    lines = [("pixel", f"{report.pixel[0]}, {report.pixel[1]}  #{shade}", theme.palette.ink)]
+    lines = [(tr("pixel"), f"{report.pixel[0]}, {report.pixel[1]}  #{shade}", theme.palette.ink)]
     if report.ground is not None:
         lines += [(name, text, theme.palette.ink) for name, text in _place(report.ground)]
     if report.shown is not None:
         lines.append(_line(report.shown, theme.palette.accent))
     elif report.ground is None:
-        lines.append(("terrain", "none here", theme.palette.dim))
+        lines.append((tr("terrain"), tr("none here"), theme.palette.dim))
     shown = report.shown.name if report.shown else ""
     lines += [_line(sample, theme.palette.ink) for sample in report.samples if sample.name != shown]
     if report.missing:
         listed = ", ".join(ref_name(name) for name in report.missing)
-        lines.append(("not in this picture", listed, theme.palette.dim))
+        lines.append((tr("not in this picture"), listed, theme.palette.dim))
     return lines
 
 
 def _place(ground: GroundPoint) -> list[tuple[str, str]]:
     east, north, up = ground.normal
     names = [
-        ("place", f"{ground.east:.1f} m east, {ground.north:.1f} m north"),
-        ("ground", f"{ground.height:.2f} m, {ground.above_sea:.2f} m above the sea"),
-        ("normal", f"{east:+.3f} {north:+.3f} {up:+.3f}"),
+        (
+            tr("place"),
+            tr("{east} m east, {north} m north", east=f"{ground.east:.1f}", north=f"{ground.north:.1f}"),
+        ),
+        (
+            tr("ground"),
+            tr(
+                "{height} m, {above_sea} m above the sea",
+                height=f"{ground.height:.2f}",
+                above_sea=f"{ground.above_sea:.2f}",
+            ),
+        ),
+        (tr("normal"), f"{east:+.3f} {north:+.3f} {up:+.3f}"),
     ]
     faces = ""
     if math.hypot(east, north) > 1e-6:
         azimuth = math.degrees(math.atan2(east, north)) % 360
-        faces = f", faces {_POINTS[round(azimuth / 45) % 8]}"
-    return [*names, ("slope", f"{ground.slope:.1f}°{faces}")]
+        faces = tr(", faces {direction}", direction=tr(_POINTS[round(azimuth / 45) % 8]))
+    return [*names, (tr("slope"), f"{ground.slope:.1f}°{faces}")]
 
 
 def _line(sample: Sample, ink: theme.Rgb) -> tuple[str, str, theme.Rgb]:
     text = "  ".join(f"{value:.6g}" for value in sample.values)
     if sample.metres is not None and math.isfinite(sample.metres):
         text += f" = {sample.metres:.2f} m"
-    text += f"   at {sample.texel[0]}, {sample.texel[1]}"
+    text += tr("   at {value}, {value_2}", value=sample.texel[0], value_2=sample.texel[1])
     colour = ink if all(map(math.isfinite, sample.values)) else theme.palette.alarm
     return ref_name(sample.name), text, colour

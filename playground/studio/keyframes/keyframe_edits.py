@@ -18,6 +18,7 @@ from playground.studio.actions import rounded
 from playground.studio.edits.edits import Edits, leaves
 from playground.studio.edits.history import KEYFRAMES, Key, changes_between
 from playground.studio.edits.undo import Undo
+from playground.studio.language import tr, tr_label
 from playground.studio.notices import Notices
 from playground.studio.save.sketch_file import SketchFile
 from playground.studio.session import Session
@@ -54,10 +55,10 @@ class KeyframeEdits:
         """
         session, draft = self.session, self.session.shown
         if draft is None or session.sketch is None:
-            self.notices.say("there is no sketch to add a keyframe to yet")
+            self.notices.say(tr("there is no sketch to add a keyframe to yet"))
             return False
         if not camera and not paths:
-            self.notices.say("choose what the keyframe sets: the camera, or a parameter")
+            self.notices.say(tr("choose what the keyframe sets: the camera, or a parameter"))
             return False
         time = _rounded_time(session.clock.time)
         keyframes = self.keyframes
@@ -80,25 +81,31 @@ class KeyframeEdits:
         left = tuple(v for v in draft.edits.values if not keyed & leaves(draft.base, v[0]))
         edits = replace(draft.edits, values=left, camera=None if camera else draft.edits.camera)
         others = [keyframe for keyframe in keyframes if keyframe is not here]
-        return self._write([*others, made], f"Keyframe at {time:g} s", edits)
+        return self._write([*others, made], tr("Keyframe at {time} s", time=f"{time:g}"), edits)
 
     def move(self, index: int, time: float) -> bool:
         """Move a keyframe to another time [s]; its place among the others follows."""
         keyframes, time = self.keyframes, _rounded_time(time)
         if any(keyframe.time == time for number, keyframe in enumerate(keyframes) if number != index):
-            self.notices.say(f"there is a keyframe at {time:g} s already")
+            self.notices.say(tr("there is a keyframe at {time} s already", time=f"{time:g}"))
             return False
-        return self._replace(index, f"Keyframe to {time:g} s", replace(keyframes[index], time=time))
+        return self._replace(
+            index, tr("Keyframe to {time} s", time=f"{time:g}"), replace(keyframes[index], time=time)
+        )
 
     def set_ease(self, index: int, ease: str) -> bool:
         """Set how the values go on from a keyframe: one of ``EASES``."""
         if ease not in EASES:
             raise ValueError(f"ease '{ease}': expected {', '.join(EASES)}")
-        return self._replace(index, f"Keyframe: {ease}", replace(self.keyframes[index], ease=ease))
+        return self._replace(
+            index, tr("Keyframe: {ease}", ease=tr_label(ease)), replace(self.keyframes[index], ease=ease)
+        )
 
     def delete(self, index: int) -> bool:
         """Delete a keyframe."""
-        return self._replace(index, f"Delete the keyframe at {self.keyframes[index].time:g} s")
+        return self._replace(
+            index, tr("Delete the keyframe at {time} s", time=f"{self.keyframes[index].time:g}")
+        )
 
     def _replace(self, index: int, name: str, *instead: Keyframe) -> bool:
         keyframes = self.keyframes
@@ -146,7 +153,7 @@ class KeyframeEdits:
 
 def summary(keyframe: Keyframe) -> str:
     """Return what a keyframe sets, in a few words."""
-    parts = ["camera"] if keyframe.camera else []
+    parts = [tr("camera")] if keyframe.camera else []
     return ", ".join([*parts, *(path for path, _ in keyframe.values)])
 
 

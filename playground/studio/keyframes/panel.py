@@ -14,6 +14,7 @@ from playground.studio.draw import QUIET, Area, button, choose, cross, header, p
 from playground.studio.edits.undo import Undo
 from playground.studio.interface import Interface
 from playground.studio.keyframes.keyframe_edits import STEP, KeyframeEdits, summary
+from playground.studio.language import shortcut, tr, tr_label
 from playground.studio.panel.parameter_list import items_of
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -35,7 +36,9 @@ class KeyframeList:
         """Draw the list, folded unless there is a keyframe."""
         keyframes = edits.keyframes
         imgui.spacing()
-        opened = header("Keyframes###keyframes", look, imgui.TreeNodeFlags_.default_open if keyframes else 0)
+        opened = header(
+            f"{tr('Keyframes')}###keyframes", look, imgui.TreeNodeFlags_.default_open if keyframes else 0
+        )
         if not opened:
             return
         with pushed_id("keyframes"):
@@ -48,13 +51,13 @@ class KeyframeList:
 
     def _adding(self, edits: KeyframeEdits, look: Theme) -> None:
         clock, draft = edits.session.clock, edits.session.shown
-        _, self.camera = imgui.checkbox("Camera", self.camera)
+        _, self.camera = imgui.checkbox(tr("Camera"), self.camera)
         imgui.same_line()
-        _, self.changed = imgui.checkbox(f"Changed values ({len(edits.changed_paths)})", self.changed)
-        imgui.set_item_tooltip("Every parameter that was edited")
+        _, self.changed = imgui.checkbox(f"{tr('Changed values')} ({len(edits.changed_paths)})", self.changed)
+        imgui.set_item_tooltip(tr("Every parameter that was edited"))
         imgui.set_next_item_width(-1)
         also = ", ".join(self.paths)
-        if imgui.begin_combo("##also", f"and {also}" if also else "and further parameters"):
+        if imgui.begin_combo("##also", tr("and {also}", also=also) if also else tr("and further parameters")):
             for path in items_of(draft):
                 picked = path in self.paths
                 if imgui.selectable(path, picked, imgui.SelectableFlags_.no_auto_close_popups)[0]:
@@ -62,12 +65,12 @@ class KeyframeList:
             imgui.end_combo()
         imgui.set_next_item_width(96 * look.scale)
         changed, time = imgui.drag_float("##now", clock.time, 0.05, 0.0, 1e6, "%.2f s")
-        imgui.set_item_tooltip("The time of the next keyframe, and of the picture")
+        imgui.set_item_tooltip(tr("The time of the next keyframe, and of the picture"))
         if changed:
             clock.playing = False
             edits.undo.seek(time)
         imgui.same_line()
-        if button("Add keyframe here", wide=-1):
+        if button(tr("Add keyframe here"), wide=-1):
             clock.playing = False
             edits.add_here(self.selected_paths(edits), camera=self.camera)
 
@@ -78,19 +81,23 @@ def _line(index: int, edits: KeyframeEdits) -> bool:
     if imgui.radio_button("##go", abs(clock.time - keyframe.time) < STEP / 2):
         edits.undo.seek(keyframe.time)
         clock.playing = False
-    imgui.set_item_tooltip(f"Go to {keyframe.time:g} s\nsets {summary(keyframe)}")
+    imgui.set_item_tooltip(
+        tr("Go to {time} s", time=f"{keyframe.time:g}") + "\n" + tr("sets {what}", what=summary(keyframe))
+    )
     imgui.same_line()
     rest = imgui.get_content_region_avail().x - slot() - 2 * imgui.get_style().item_spacing.x
     imgui.set_next_item_width(rest * 0.5)
     enter = imgui.InputTextFlags_.enter_returns_true
     entered, time = imgui.input_float("##time", keyframe.time, 0.0, 0.0, "%.2f s", enter)
-    imgui.set_item_tooltip("Its time; Enter moves it")
+    imgui.set_item_tooltip(tr("Its time; Enter moves it"))
     imgui.same_line()
     imgui.set_next_item_width(rest * 0.5)
-    ease = choose("##ease", keyframe.ease, EASES, keyframe.ease)
-    imgui.set_item_tooltip("How values go from here to the next")
+    ease = choose("##ease", tr_label(keyframe.ease), EASES, keyframe.ease, name=tr_label)
+    imgui.set_item_tooltip(tr("How values go from here to the next"))
     imgui.same_line()
-    if cross("##delete", f"Delete the keyframe at {keyframe.time:g} s", imgui.get_frame_height()):
+    if cross(
+        "##delete", tr("Delete the keyframe at {time} s", time=f"{keyframe.time:g}"), imgui.get_frame_height()
+    ):
         return edits.delete(index)
     if entered and time != keyframe.time:
         return edits.move(index, time)
@@ -127,31 +134,31 @@ def draw_timeline(undo: Undo, interface: Interface, look: Theme, area: Area) -> 
 
 def _controls(undo: Undo, look: Theme) -> None:
     clock, gap = undo.session.clock, 4 * look.scale
-    if button("Pause" if clock.playing else "Play", "Space", wide=58 * look.scale):
+    if button(tr("Pause") if clock.playing else tr("Play"), shortcut("Space"), wide=58 * look.scale):
         clock.toggle()
-    for label, frames, note in (("<", -1, "a frame back  ,"), (">", 1, "a frame on  .")):
+    for label, frames, note in (("<", -1, f"{tr('a frame back')}  ,"), (">", 1, f"{tr('a frame on')}  .")):
         imgui.same_line(0, gap)
         if button(label, note):
             undo.step_time(frames)
     imgui.same_line(0, gap)
-    if button("To 0"):
+    if button(tr("To 0")):
         undo.seek(0.0)
     imgui.same_line(0, gap)
     with styled({imgui.Col_.button: theme.colour(theme.palette.accent, 0.5)} if clock.loop else {}):
-        if button("Loop"):
+        if button(tr("Loop")):
             undo.toggle_loop()
-    imgui.set_item_tooltip("Repeat a span of time (L); Shift+drag on the bar chooses from when to when")
+    imgui.set_item_tooltip(tr("Repeat a span of time (L); Shift+drag on the bar chooses from when to when"))
     imgui.same_line(0, gap)
     imgui.set_next_item_width(64 * look.scale)
     shown = _times(clock.speed)
     clock.speed = choose("##speed", shown, SPEEDS, clock.speed, name=_times, flags=_NO_ARROW) or clock.speed
-    imgui.set_item_tooltip("Seconds of the sketch in a second")
+    imgui.set_item_tooltip(tr("Seconds of the sketch in a second"))
     imgui.same_line(0, gap)
     imgui.set_next_item_width(84 * look.scale)
     changed, time = imgui.drag_float("##time", clock.time, 0.02, 0.0, 1e6, "%.2f s")
     if changed:
         undo.seek(time)
-    imgui.set_item_tooltip("Drag, or Ctrl+click to type")
+    imgui.set_item_tooltip(tr("Drag, or Ctrl+click to type"))
 
 
 def _times(speed: float) -> str:

@@ -26,6 +26,7 @@ from playground.sketch.assign import resolve, shown_parameters, value_of, values
 from playground.sketch.files import find_file
 from playground.sketch.flat import Ref
 from playground.sketch.model import CpuSource, Parameter, Sketch
+from playground.studio.language import tr
 from playground.studio.paint.brush import TOOLS, Brush, Dab, Tool, rate_of
 from playground.studio.paint.erode_tool import ErodeTool, technique_at
 from playground.studio.paint.layer import MAX_TEXELS, NUMBERS, WEIGHTS, Layer, LayerKind
@@ -153,7 +154,7 @@ class Painting:
         """Take the brush, or put it down."""
         if not self.target:
             self.session.notes.append(
-                'this sketch has nothing to paint on: none of its files has the word "paint"'
+                tr('this sketch has nothing to paint on: none of its files has the word "paint"')
             )
         self._taken = bool(self.target) and not self._taken
         if not MIN_RADIUS * self.side <= self.brush.radius <= MAX_RADIUS * self.side:
@@ -181,7 +182,9 @@ class Painting:
         if tool in self.tools:
             self.brush = replace(self.brush, tool=tool)
         else:
-            self.session.notes.append(f"nothing to {tool} in {self.target}: choose another tool")
+            self.session.notes.append(
+                tr("nothing to {tool} in {target}: choose another tool", tool=tr(tool), target=self.target)
+            )
 
     def ground(self, position: tuple[float, float]) -> tuple[float, float] | None:
         """Return where on the terrain a place of the picture lies, both in fractions; None in the sky."""
@@ -208,7 +211,7 @@ class Painting:
         if self._heights[1] is None:
             self._heights = None, None  # what could not be read may be there now
         if self._height() is None and not (plan and view_height(plan)):
-            self.session.notes.append("the view shows no height, so there is no ground to paint on")
+            self.session.notes.append(tr("the view shows no height, so there is no ground to paint on"))
         self._last = self.ground(position)
         if self._last is None:
             return
@@ -311,7 +314,9 @@ class Painting:
             self._saved(lambda: act(layer))
             return
         self._saved(layer.take_in)
-        self.session.notes.append(f"{layer.path.name} was changed by another program: it stays as it is now")
+        self.session.notes.append(
+            tr("{path} was changed by another program: it stays as it is now", path=layer.path.name)
+        )
 
     def _saved(self, act: Callable[[], None]) -> None:
         try:
@@ -341,7 +346,9 @@ class Painting:
         """
         parameter, engine = self._parameter(), self.session.engine
         if "erode" not in self.tools:
-            self.session.notes.append(f"nothing to erode in {self.target}: choose another tool")
+            self.session.notes.append(
+                tr("nothing to erode in {target}: choose another tool", target=self.target)
+            )
             return False
         try:
             technique = technique_at(self.erodes_by, parameter.file)
@@ -391,7 +398,9 @@ class Painting:
         layer.writing.ended = self._wake or layer.writing.ended
         self.session.data.trust(layer.path)
         self.session.drafts.set(path, str(layer.path))
-        self.session.notes.append(f"painting on {layer.path.name} in {layer.path.parent}")
+        self.session.notes.append(
+            tr("painting on {path} in {parent}", path=layer.path.name, parent=layer.path.parent)
+        )
         return layer
 
     def _surface(self) -> tuple[Eye, NDArray[np.float32], tuple[float, float], float] | None:

@@ -12,7 +12,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from playground.engine.non_finite import NotFinite
-from playground.errors import PlaygroundError, counted
+from playground.errors import PlaygroundError
+from playground.studio.language import counted, tr
 from playground.studio.session import Session
 
 REST = 0.4  # [s] without a new picture before one is looked at
@@ -106,7 +107,16 @@ def summary(not_finite: tuple[NotFinite, ...]) -> str:
     """Return what was found as a message: the first, and of how many."""
     first = not_finite[0]
     x, y = first.texel
-    output = f", output '{first.output}'," if first.output != first.path.rpartition(".")[2] else ""
-    text = f"pass '{first.path}'{output} makes {first.value} at texel ({x}, {y})"
-    text += f", {counted(first.count, 'texel')}"
-    return f"{text}; first of {len(not_finite)} passes" if len(not_finite) > 1 else text
+    output = (
+        tr(", output '{name}',", name=first.output) if first.output != first.path.rpartition(".")[2] else ""
+    )
+    text = tr(
+        "pass '{path}'{output} makes {value} at texel ({x}, {y}), {texels}",
+        path=first.path,
+        output=output,
+        value=first.value,
+        x=x,
+        y=y,
+        texels=counted(first.count, "texel"),
+    )
+    return text + (tr("; first of {count} passes", count=len(not_finite)) if len(not_finite) > 1 else "")

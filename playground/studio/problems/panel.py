@@ -12,12 +12,13 @@ from functools import cached_property
 from imgui_bundle import ImVec2, imgui
 
 from playground.engine.non_finite import NotFinite
-from playground.errors import Diagnostic, counted
+from playground.errors import Diagnostic
 from playground.paths import current_folder
 from playground.studio import theme
 from playground.studio.code.open_files import OpenFiles, editor_name
 from playground.studio.draw import OVERLAY, QUIET, Area, button, inked, pushed_id, styled, window, wrapped
 from playground.studio.interface import Interface
+from playground.studio.language import counted, tr
 from playground.studio.problems.non_finite import FiniteWatch, summary
 from playground.studio.problems.problems import Problems, passes_of
 from playground.studio.session import Session
@@ -113,7 +114,7 @@ class ErrorsList:
             with inked(self._ink):
                 if imgui.small_button(f"{self.problems.headline()}##badge"):
                     self.problems.open = True
-            imgui.set_item_tooltip("Show the list (F8)")
+            imgui.set_item_tooltip(tr("Show the list (F8)"))
 
     def _list(self, look: Theme, area: Area) -> None:
         problems, margin = self.problems, 14 * look.scale
@@ -133,26 +134,26 @@ class ErrorsList:
                     self._file(file, mine, number, look)
                 number += len(mine)
             if (left := len(problems.all) - MAX_ROWS) > 0:
-                imgui.text_disabled(f"and {left} more; Copy has them all")
+                imgui.text_disabled(tr("and {left} more; Copy has them all", left=left))
             problems.moved = False
             imgui.end_child()
 
     def _headline(self, look: Theme) -> None:
         problems, text = self.problems, self.problems.headline()
         if problems.errors:
-            stays = "the last good picture stays" if self.session.shown else "there is no picture yet"
+            stays = tr("the last good picture stays") if self.session.shown else tr("there is no picture yet")
             text = f"{text}; {stays}"
         style = imgui.get_style()
-        wide = sum(imgui.calc_text_size(b).x + 2 * style.frame_padding.x for b in ("Copy", "Fold"))
+        wide = sum(imgui.calc_text_size(b).x + 2 * style.frame_padding.x for b in (tr("Copy"), tr("Fold")))
         right = imgui.get_window_width() - style.window_padding.x - wide - style.item_spacing.x
         with look.font(look.bold), wrapped(right - style.item_spacing.x):
             imgui.text_colored(theme.colour(self._ink), f"{text}.")
         imgui.same_line(right)
-        if button("Copy##errors", "All of it, to the clipboard", small=True):
+        if button(f"{tr('Copy')}##errors", tr("All of it, to the clipboard"), small=True):
             imgui.set_clipboard_text(problems.text())
-            self.files.notices.say(f"copied {problems.headline()}")
+            self.files.notices.say(tr("copied {headline}", headline=problems.headline()))
         imgui.same_line()
-        if button("Fold##errors", "To a badge; F8 brings it back", small=True):
+        if button(f"{tr('Fold')}##errors", tr("To a badge; F8 brings it back"), small=True):
             problems.open = False
 
     def _file(self, file: str, mine: list[Diagnostic], first: int, look: Theme) -> None:
@@ -161,7 +162,7 @@ class ErrorsList:
             imgui.set_next_item_open(True)
         with look.font(look.bold):
             flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.span_avail_width
-            title = self._short(file) if file else "no file"
+            title = self._short(file) if file else tr("no file")
             opened = imgui.tree_node_ex(f"{title}   {_count(mine)}###file {file}", flags)
         if not opened:
             return
@@ -207,7 +208,7 @@ class ErrorsList:
             _code(diagnostic, lines, look)
         for at, included in enumerate(() if again else reversed(diagnostic.chain)):
             with look.font(look.code, theme.SMALL):
-                imgui.text_disabled("included from")
+                imgui.text_disabled(tr("included from"))
                 imgui.same_line(0, imgui.calc_text_size(" ").x)
                 if imgui.text_link(f"{self._short(included)}##chain {at}"):
                     self.files.open_place(included)
@@ -226,17 +227,21 @@ class ErrorsList:
             if imgui.text_link(f"{self._short(diagnostic.location)}##place"):
                 self.files.open_problem(diagnostic)
         if imgui.is_item_hovered():
-            imgui.set_tooltip(f"{diagnostic.location}\nOpens in {editor_name() or 'the code pane'}")
+            imgui.set_tooltip(
+                diagnostic.location
+                + "\n"
+                + tr("Opens in {editor}", editor=editor_name() or tr("the code pane"))
+            )
         with look.font(look.text, theme.SMALL):
             imgui.same_line(0, 16 * look.scale)
-            if imgui.text_link("edit here##here"):
+            if imgui.text_link(f"{tr('edit here')}##here"):
                 self.files.open_problem(diagnostic, here=True)
-            imgui.set_item_tooltip("Opens the file in the code pane")
+            imgui.set_item_tooltip(tr("Opens the file in the code pane"))
             for name in passes_of(self.session.sketch, diagnostic)[:3]:
                 imgui.same_line(0, 12 * look.scale)
-                if imgui.text_link(f"pass {name}##pass"):
+                if imgui.text_link(f"{tr('pass {name}', name=name)}##pass"):
                     self.interface.show_pass(name)
-                imgui.set_item_tooltip("Shows the pass in the panel")
+                imgui.set_item_tooltip(tr("Shows the pass in the panel"))
 
     def _short(self, location: str) -> str:
         return short_place(location, self._folder)
@@ -326,12 +331,12 @@ def draw_not_finite(watch: FiniteWatch, session: Session, tracing: Tracing, look
             imgui.text_colored(theme.colour(_MAGENTA), summary(watch.non_finite))
         imgui.set_item_tooltip("\n".join(map(str, watch.non_finite)))
         if shows:
-            if button("Back to the picture", small=True):
+            if button(tr("Back to the picture"), small=True):
                 session.show(None)
             imgui.same_line()
         elif session.can_show(ref):
-            if button("Show it", "That texture from above, those texels in magenta", small=True):
+            if button(tr("Show it"), tr("That texture from above, those texels in magenta"), small=True):
                 session.show(ref)
             imgui.same_line()
-        if button("Trace it", "The line that first gives such a number", small=True):
+        if button(tr("Trace it"), tr("The line that first gives such a number"), small=True):
             tracing.trace_not_finite(first)

@@ -17,13 +17,14 @@ from playground.data.live_inputs import LiveInputs
 from playground.engine.plan import Plan
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.sketch_warnings import warnings_of_kernel
-from playground.errors import Diagnostic, PlaygroundError, counted
+from playground.errors import Diagnostic, PlaygroundError
 from playground.files import read_regular
 from playground.memo import FILES
 from playground.paths import GLSL, without_part
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import Techniques
 from playground.sketch.warnings import warnings_of_sketch
+from playground.studio.language import counted, tr
 from playground.studio.reload.dependencies import path_named
 
 AROUND = 2
@@ -106,7 +107,7 @@ class Problems:
         parts = [counted(len(self.errors), "error")] if self.errors else []
         parts += [counted(len(self.warnings), "warning")] if self.warnings else []
         files = len({d.file for d in (*self.errors, *self.warnings) if d.file})
-        return ", ".join(parts) + (f" in {counted(files, 'file')}" if files > 1 else "")
+        return ", ".join(parts) + (tr(" in {files}", files=counted(files, "file")) if files > 1 else "")
 
     def text(self) -> str:
         """Return everything, as the terminal prints it."""
