@@ -48,7 +48,7 @@ from playground.studio.guard import Guard
 from playground.studio.interface import WindowControls, remembered_preferences
 from playground.studio.keyframes.panel import height_of_timeline
 from playground.studio.keys import PictureKeys, act_on_keys, draw_keymap
-from playground.studio.language import choose_language
+from playground.studio.language import choose_language, tr
 from playground.studio.mouse import PictureMouse
 from playground.studio.overlay import (
     checking_text,
@@ -610,5 +610,7 @@ class Live:
         latest = self.session.last_reload
         if latest is not self._reloads:
             if self._reloads is not None and not any(addition.shows_own for addition in self.additions):
-                self.bench.notices.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
+                self.bench.notices.say(
+                    tr("reloaded in {value} ms", value=f"{latest.seconds * 1e3:.0f}") if latest else ""
+                )
             self._reloads = latest

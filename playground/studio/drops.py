@@ -16,6 +16,7 @@ from playground.sketch.find import find, is_pack, unpacked_beside
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.studio.actions import Actions
 from playground.studio.channels.channels import IMAGES, MEDIA, Taker, takers
+from playground.studio.language import tr
 from playground.studio.panel.parameter_list import Item, items_of, shown_values
 
 _FILES = (*IMAGES, *VECTORS, *(ending for endings in MEDIA.values() for ending in endings))
@@ -68,13 +69,23 @@ class Drops:
         files = [path for path in paths if path.suffix.lower() in _FILES and path.is_file()]
         for path in paths:
             if path not in files:
-                say(f"{path.name} is neither a sketch, a shader nor an image, a video or a sound")
+                say(
+                    tr(
+                        "{path} is neither a sketch, a shader nor an image, a video or a sound",
+                        path=path.name,
+                    )
+                )
         parameter_files = [path for path in files if self.parameters(path) or self.channels(path)]
         if files and not parameter_files and is_terrain(files[0]):
             self.actions.open(files[0])
             return
         if files and not parameter_files:
-            say(f"no parameter of this sketch takes a file like {files[0].name}, so it has no place in it")
+            say(
+                tr(
+                    "no parameter of this sketch takes a file like {name}, so it has no place in it",
+                    name=files[0].name,
+                )
+            )
         elif parameter_files:
             self.waiting, self.asks = parameter_files, True
 
@@ -128,7 +139,7 @@ class Drops:
     def put(self, path: str) -> None:
         """Put the file that waits into a parameter."""
         file = self._next()
-        self.actions.set_all(f"{file.name} into {path}", {path: str(file.resolve())})
+        self.actions.set_all(tr("{file} into {path}", file=file.name, path=path), {path: str(file.resolve())})
 
     def _open_pack(self, path: Path) -> None:
         try:

@@ -33,6 +33,7 @@ from playground.studio.clock import Clock
 from playground.studio.edits.drafts import Drafts
 from playground.studio.edits.edits import Draft, StoredEdits
 from playground.studio.land.exaggerated import exaggeration
+from playground.studio.language import tr
 from playground.studio.picture.gestures import turned_sun
 from playground.studio.picture.shown_picture import CatchUp, ShownPicture
 from playground.studio.picture.view import View, fitted, in_view, steps_of_repeats
@@ -455,10 +456,12 @@ class Session:
         shown = self.shown, self.drafts.revision, self.view.revision
         if self._lost_over == shown and self._size is not None:
             self._drawn = self._picture_key(self._size)
-            message = "this made the graphics driver reset itself twice; it waits until something is changed"
+            message = tr(
+                "this made the graphics driver reset itself twice; it waits until something is changed"
+            )
             self.drafts.report(ContextError(message))
         self._lost_over = shown
-        self.notes.append("the graphics driver was reset; everything was built again")
+        self.notes.append(tr("the graphics driver was reset; everything was built again"))
 
     def needs_drawing(self, sketch: Sketch) -> bool:
         """Say whether the driver would get anything that it has not drawn already.
@@ -525,7 +528,7 @@ class Session:
         self._drawn, shown = key, self.view.map
         try:
             if shown is not None and not self._has(shown, sketch):
-                self.notes.append(f"{shown.ref} is gone, so the sketch's own view is shown")
+                self.notes.append(tr("{ref} is gone, so the sketch's own view is shown", ref=shown.ref))
                 self.view.map = shown = None
             if shown is None and self.view.look is not None and not self.view.look.fits(sketch):
                 self.view.look = None  # its heights are gone
@@ -562,7 +565,9 @@ class Session:
         """Let time stand still, the first time that a sketch is too slow for it: so it is drawn in full."""
         if self.clock.playing and "slow" not in self._reported:
             self.clock.playing = False
-            self._note_once("slow", "time is paused, so that the picture is drawn in full; Space plays it")
+            self._note_once(
+                "slow", tr("time is paused, so that the picture is drawn in full; Space plays it")
+            )
 
     def _note_once(self, kind: str, message: str) -> None:
         """Add a note, unless one of its kind was given of this sketch."""

@@ -20,6 +20,7 @@ from playground.sketch.map_sketch import Map
 from playground.studio.compare.compare import Compare
 from playground.studio.edits.edits import Draft, FileValue, file_values
 from playground.studio.edits.memory import Memory, Remembered
+from playground.studio.language import tr
 from playground.studio.session import Session
 
 QUIET = 0.5  # [s] without another change after which a change is written
@@ -92,7 +93,9 @@ class Autosave:
         session, now = self.session, self._now()
         if session.shown is None or session.drafts.opening:
             if self._recalled and isinstance(session.error, SandboxError):
-                session.notes.append(f"{program()} live --fresh opens it without your edits")
+                session.notes.append(
+                    tr("{program} live --fresh opens it without your edits", program=program())
+                )
                 self._recalled = False
             if session.shown is None or self.latest is None:
                 return
@@ -121,11 +124,11 @@ class Autosave:
         self._written_at = self._now()
         try:
             if not self._memory.claim():
-                self._report("another window has this sketch open, and remembers it; this one does not")
+                self._report(tr("another window has this sketch open, and remembers it; this one does not"))
                 return
             self._memory.write(self.latest)
         except PlaygroundError as error:
-            self._report(f"your edits cannot be remembered: {error}")
+            self._report(tr("your edits cannot be remembered: {error}", error=error))
             return
         self._written = self.latest
 

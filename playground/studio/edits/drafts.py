@@ -35,6 +35,7 @@ from playground.sketch.replace_technique import with_texts
 from playground.studio.edits.edits import Draft, Edits, StoredEdits, first_draft, reload_draft, stored, taken
 from playground.studio.edits.history import CHECKED, Key, State, applied, changes_between, edits_of, state_of
 from playground.studio.edits.technique_cache import TechniqueCache
+from playground.studio.language import tr
 from playground.studio.picture.gestures import suns_of, turned_sun
 from playground.studio.reload.dependencies import watched
 from playground.studio.reload.stages import (
@@ -72,7 +73,7 @@ class Choice:
             path: value if kind in CHECKED or value is None else Path(str(value)).name
             for (kind, path), value in self.chosen.items()
         }
-        return ", ".join(f"{path}: {value or 'what the file says'}" for path, value in named.items())
+        return ", ".join(f"{path}: {value or tr('what the file says')}" for path, value in named.items())
 
 
 def choice_of(change: Change, before: Edits, after: Edits) -> Choice:
@@ -241,7 +242,7 @@ class Drafts:
         file = find(path).absolute()
         self._techniques.dialect = ""
         if not keep:
-            self._leave_out("another sketch is opened", self._choices if self._is_checked else [])
+            self._leave_out(tr("another sketch is opened"), self._choices if self._is_checked else [])
             self._start, self._choices = start or StoredEdits(), []
         self.path, self.texts, self.opening = file, texts or {}, not keep
         self.opened += 1
@@ -352,7 +353,9 @@ class Drafts:
 
     def _leave_out(self, why: str, choices: Iterable[Choice]) -> None:
         """Say that choices of the user are not taken."""
-        self.notes.extend(f"{choice.label} is not taken: {why}" for choice in choices)
+        self.notes.extend(
+            tr("{label} is not taken: {why}", label=choice.label, why=why) for choice in choices
+        )
 
     def _drop_coming(self) -> None:
         self.coming, self.stage, self._coming_notes = None, ReloadStage.NONE, []
@@ -522,7 +525,10 @@ class Drafts:
         if is_new and not choice.chosen:
             choice = made  # it is being checked already
         if self.opening and is_new:
-            self._leave_out(f"{shown_path(self.path)} is being opened, and not shown yet", [choice])
+            self._leave_out(
+                tr("{shown_path} is being opened, and not shown yet", shown_path=shown_path(self.path)),
+                [choice],
+            )
             return False
         if self.stage is ReloadStage.FAILED and not self.opening:
             if is_new or (choice.chosen and self._choices):
@@ -557,5 +563,5 @@ class Drafts:
 def _listed(files: Iterable[Path]) -> str:
     """Return the names of files in a few words: "terrain.glsl", "terrain.glsl, wave.glsl and 2 more"."""
     names = sorted({path.name for path in files})
-    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    more = tr(" and {value} more", value=len(names) - _NAMED) if len(names) > _NAMED else ""
     return ", ".join(names[:_NAMED]) + more

@@ -41,6 +41,7 @@ from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve, values_
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.replace_technique import with_technique
 from playground.studio.channels.channels import channels, find_channel, in_order, with_source
+from playground.studio.language import tr
 
 # ── values in files ───────────────────────────────────────────────────────────
 
@@ -91,9 +92,11 @@ def notice(sketch: Sketch, path: str, value: Value, newer: FileValue) -> str:
     if newer.value == value or _same_file(sketch, value, newer.value):
         return ""
     if newer.value is None or path in TERRAIN_KEYS:
-        return f"{path}: the file's new value is taken"
+        return tr("{path}: the file's new value is taken", path=path)
     parameter = resolve(sketch.graph, path)[0].parameter
-    return f"{path}: the file's new value, {write(parameter, newer.value)}, is taken"
+    return tr(
+        "{path}: the file's new value, {write}, is taken", path=path, write=write(parameter, newer.value)
+    )
 
 
 def _same_file(sketch: Sketch, value: Value, newer: Value | None) -> bool:
@@ -273,7 +276,7 @@ def with_camera_of(edits: Edits, was: Camera, now: Camera) -> tuple[Edits, str]:
     """Return edits without their camera where the file has moved its own, and a message if one is due."""
     if edits.camera is None or now == was:
         return edits, ""
-    note = "" if edits.camera == now else "camera: the file's new one is taken"
+    note = "" if edits.camera == now else tr("camera: the file's new one is taken")
     return replace(edits, camera=None), note
 
 
@@ -290,13 +293,20 @@ def _with_techniques(
         if now is not None and now.use == use:
             continue  # it has become the file's own
         if before and (now is None or (was is not None and was.use != now.use)):
-            notes.append(f"{name}: the technique chosen here gave way to the file's")
+            notes.append(tr("{name}: the technique chosen here gave way to the file's", name=name))
             continue
         try:
             base = with_technique(base, name, use)
             stay.append((name, use))
         except PlaygroundError as error:
-            notes.append(f"{name}: {use} can no longer be used ({error.diagnostics[0].message})")
+            notes.append(
+                tr(
+                    "{name}: {use} can no longer be used ({message})",
+                    name=name,
+                    use=use,
+                    message=error.diagnostics[0].message,
+                )
+            )
     return base, tuple(stay)
 
 
@@ -310,13 +320,22 @@ def _with_sources(
         if now is not None and now.is_fed_by(source):
             continue  # it has become the file's own
         if before and (now is None or (was is not None and was.source != now.source)):
-            notes.append(f"{channel}: what was chosen to feed it here gave way to the file's")
+            notes.append(
+                tr("{channel}: what was chosen to feed it here gave way to the file's", channel=channel)
+            )
             continue
         try:
             base = with_source(base, channel, source)
             stay.append((channel, source))
         except PlaygroundError as error:
-            notes.append(f"{channel}: {source} can no longer feed it ({error.diagnostics[0].message})")
+            notes.append(
+                tr(
+                    "{channel}: {source} can no longer feed it ({message})",
+                    channel=channel,
+                    source=source,
+                    message=error.diagnostics[0].message,
+                )
+            )
     return base, tuple(stay)
 
 
@@ -330,7 +349,7 @@ def _after_reload(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str,
         if path not in TERRAIN_KEYS and (now is None or taken(old.base, path, value) is None):
             left.append((path, value))  # it waits
             if now is None and was is not None:
-                notes.append(f"{path} is gone; what was set here waits in case it returns")
+                notes.append(tr("{path} is gone; what was set here waits in case it returns", path=path))
             continue
         newer = newer_value(path, before, after, old.edits.locked)
         if newer is not None:
@@ -365,23 +384,40 @@ def _moved(was: Parameter, now: Parameter, value: Value, path: str, base: Sketch
     """Return what becomes of a value whose parameter is declared again (None: it goes), and why."""
     if was.type != now.type or (was.widget.kind == "menu") != (now.widget.kind == "menu"):
         noun = (was.type, now.type) if was.type != now.type else (was.widget.kind, now.widget.kind)
-        return None, f"{path} was {noun[0]} and is {noun[1]} now: back to the file's value"
+        return None, tr(
+            "{path} was {value} and is {value_2} now: back to the file's value",
+            path=path,
+            value=noun[0],
+            value_2=noun[1],
+        )
     if now.widget.kind == "menu" and isinstance(value, int) and was.widget.choices != now.widget.choices:
         choice = was.widget.choices[value]
         if choice in now.widget.choices:
             return now.widget.choices.index(choice), ""
-        return None, f"{path}: its menu has no '{choice}' any more: back to the file's value"
+        return None, tr(
+            "{path}: its menu has no '{choice}' any more: back to the file's value", path=path, choice=choice
+        )
     if taken(base, path, value) is not None:
         return value, ""
     low, high = now.widget.low, now.widget.high
     if low is None or high is None or isinstance(value, str | bool):
-        return None, f"{path} no longer takes {write(was, value)}: back to the file's value"
+        return None, tr(
+            "{path} no longer takes {write}: back to the file's value", path=path, write=write(was, value)
+        )
     nearest = _clamped(now, value, low, high)
     if taken(base, path, nearest) is None:
-        return None, f"{path} no longer takes {write(was, value)}: back to the file's value"
+        return None, tr(
+            "{path} no longer takes {write}: back to the file's value", path=path, write=write(was, value)
+        )
     return nearest, (
-        f"{path} = {write(was, value)} is outside its new range {low:g} to {high:g}:"
-        f" {write(now, nearest)} is taken"
+        tr(
+            "{path} = {write} is outside its new range {low} to {high}: {write_2} is taken",
+            path=path,
+            write=write(was, value),
+            low=f"{low:g}",
+            high=f"{high:g}",
+            write_2=write(now, nearest),
+        )
     )
 
 

@@ -25,6 +25,7 @@ from playground.files import new_name, read_regular, write_file
 from playground.json_text import read_json
 from playground.sketch.model import Camera, Value
 from playground.studio.edits.edits import Edits, FileValue, StoredEdits
+from playground.studio.language import tr
 
 
 def set_aside(path: Path, what: str, error: Exception) -> str:
@@ -37,8 +38,8 @@ def set_aside(path: Path, what: str, error: Exception) -> str:
         with new_name(path.with_suffix(".unread.json")) as aside:
             path.replace(aside)
     except (OSError, PlaygroundError):
-        return f"{what} cannot be read and cannot be set aside: {path}{why}"
-    return f"{what} cannot be read; it is kept in {aside}{why}"
+        return tr("{what} cannot be read and cannot be set aside: {path}{why}", what=what, path=path, why=why)
+    return tr("{what} cannot be read; it is kept in {aside}{why}", what=what, aside=aside, why=why)
 
 
 FORMAT = 1
@@ -106,7 +107,7 @@ class Memory:
                 raise ValueError(f"it is larger than {_MAX_BYTES // 2**20} MiB")
             return _read(read_json(read_regular(self.path).decode())), ""
         except (OSError, ValueError, TypeError, KeyError, AttributeError, ArithmeticError) as error:
-            return Remembered(), set_aside(self.path, "what was remembered of this sketch", error)
+            return Remembered(), set_aside(self.path, tr("what was remembered of this sketch"), error)
 
     def write(self, remembered: Remembered) -> None:
         """Write it, or remove the file where there is nothing to remember; raise ``DataError``."""

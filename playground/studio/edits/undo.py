@@ -9,6 +9,7 @@ from pathlib import Path
 
 from playground.studio.clock import stepped, toggle_loop
 from playground.studio.edits.history import FILES, KEYFRAMES, TEXT, History, State, TextChange, steps_of
+from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.paint.painting import Painting
 from playground.studio.reload.stages import ReloadStage
@@ -72,23 +73,23 @@ class Undo:
         """Undo the last step; while painting, the last stroke."""
         layer = self.painting.layer
         if self.painting.on and (layer is None or not layer.can_undo):
-            self.notices.say("no stroke to take back; put the brush down (B) to undo values")
+            self.notices.say(tr("no stroke to take back; put the brush down (B) to undo values"))
         elif self.painting.on:
             self.painting.undo()
-            self.notices.say("took the last stroke back; put the brush down (B) to undo values")
+            self.notices.say(tr("took the last stroke back; put the brush down (B) to undo values"))
         elif not self._go(-1):
-            self.notices.say("nothing to undo")
+            self.notices.say(tr("nothing to undo"))
 
     def redo(self) -> None:
         """Redo the step that was undone last; while painting, the stroke."""
         layer = self.painting.layer
         if self.painting.on and (layer is None or not layer.can_redo):
-            self.notices.say("no stroke to paint again; put the brush down (B) to redo values")
+            self.notices.say(tr("no stroke to paint again; put the brush down (B) to redo values"))
         elif self.painting.on:
             self.painting.redo()
-            self.notices.say("painted the stroke again; put the brush down (B) to redo values")
+            self.notices.say(tr("painted the stroke again; put the brush down (B) to redo values"))
         elif not self._go(1):
-            self.notices.say("nothing to redo")
+            self.notices.say(tr("nothing to redo"))
 
     def _go(self, by: int) -> bool:
         """Undo (-1) or redo (1) a step; return False where there is none."""

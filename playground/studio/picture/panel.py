@@ -18,6 +18,7 @@ from playground.sketch.assign import values_of
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch
 from playground.studio import theme
 from playground.studio.draw import Area
+from playground.studio.language import tr
 from playground.studio.theme import Theme
 
 _MIN_WIDTH = 48.0  # [units of scale 1] a part that is narrower has no room for a name
@@ -47,7 +48,7 @@ def parts_of(sketch: Sketch) -> list[PictureRegion]:
         return []
     values = values_of(sketch)
     if any(values[f"view.{divide.name}.{menu}"] != 0 for menu in _menus(divide)):
-        return [PictureRegion(0.0, 1.0, " against ".join(names), "")]
+        return [PictureRegion(0.0, 1.0, tr(" against ").join(names), "")]
     lines = [0.0]
     for name in _dividers(divide):
         value = values[f"view.{divide.name}.{name}"]
@@ -84,7 +85,9 @@ def _named(sketch: Sketch, view: PassSpec, graph: Graph, divide: PassSpec) -> tu
     differing = [name for name in own[0] if name in shared and len({sources[name] for sources in own}) > 1]
     if not differing:
         return [], []
-    names = [" and ".join(label_of(sources[name].partition(".")[0]) for name in differing) for sources in own]
+    names = [
+        tr(" and ").join(label_of(sources[name].partition(".")[0]) for name in differing) for sources in own
+    ]
     return names, _methods(sketch, [sources[differing[0]] for sources in own], differing[0])
 
 

@@ -25,6 +25,7 @@ from playground.paths import GLSL, shown
 from playground.shader.parameter import part_names
 from playground.sketch.model import Parameter, Value
 from playground.sketch.toml_table import FORMAT, TomlFile
+from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.panel.parameter_list import items_of, shown_values
 from playground.studio.panel.values import HALF, check_range, is_switch, value_fraction, with_fraction
@@ -48,7 +49,12 @@ class Source:
     number: int  # 0 to 127
 
     def __str__(self) -> str:
-        return f"{self.kind} {self.number} of channel {self.channel}"
+        return tr(
+            "{kind} {number} of channel {channel}",
+            kind=tr(self.kind),
+            number=self.number,
+            channel=self.channel,
+        )
 
 
 @dataclass(frozen=True)
@@ -165,7 +171,7 @@ class Controllers:
     def __init__(self, session: Session, notices: Notices) -> None:
         self._session = session
         self._notices = notices
-        self.listen: Callable[[], str] = lambda: "MIDI cannot be received here"  # returns why not, or ""
+        self.listen: Callable[[], str] = lambda: tr("MIDI cannot be received here")  # returns why not, or ""
         self.learning: _Learning | None = None
         self._bindings: tuple[Binding, ...] = ()
         self._of: Path | None = None
@@ -185,7 +191,7 @@ class Controllers:
                 self._bindings = read_bindings(file_of(path))
             except PlaygroundError as error:
                 self._bindings, self._unreadable = (), True
-                self._notices.say(f"MIDI: {error}")
+                self._notices.say(tr("MIDI: {error}", error=error))
         return self._bindings
 
     @property
@@ -215,7 +221,7 @@ class Controllers:
             return
         self.learning = _Learning(path, part)
         target = f"{path}, {part}" if part else path
-        self._notices.say(f"{_ASKS} for {target}")
+        self._notices.say(tr("{asks} for {parameter}", asks=tr(_ASKS), parameter=target))
 
     def cancel(self) -> None:
         """Learn nothing after all."""
@@ -226,7 +232,7 @@ class Controllers:
         left = tuple(binding for binding in self.bindings if binding.path != path)
         if left != self._bindings:
             self._keep(left)
-            self._notices.say(f"MIDI: no controller sets {path} any more")
+            self._notices.say(tr("MIDI: no controller sets {path} any more", path=path))
 
     def update(self) -> None:
         """Take in what was learned, once that is known. Call it in each frame."""
@@ -236,29 +242,37 @@ class Controllers:
         if self._notices.now() - learning.since < SETTLES and not _is_note(learning):
             return
         source, fine = _learned(learning.seen)
-        self._notices.drop(_ASKS)
+        self._notices.drop(tr(_ASKS))
         self.learning = None
         binding = Binding(learning.path, learning.part, source, fine)
         others = [b for b in self.bindings if (b.path, b.part) != (binding.path, binding.part)]
         self._keep((*others, binding))
         also = [b.target for b in others if b.source == source]
-        more = f"; it sets {' and '.join(also)} as well" if also else ""
-        self._notices.say(f"MIDI: {source} sets {binding.target}{more}")
+        more = tr("; it sets {join} as well", join=tr(" and ").join(also)) if also else ""
+        self._notices.say(
+            tr("MIDI: {source} sets {target}{more}", source=source, target=binding.target, more=more)
+        )
         self._knobs[binding] = _Knob(self._fraction(binding))
 
     def _keep(self, bindings: tuple[Binding, ...]) -> None:
         self._bindings = bindings
         path = self._session.drafts.shown_path
         if path.is_relative_to(GLSL):
-            self._say_once("shipped", f"MIDI: {path.stem} comes with the playground; a copy keeps this")
+            self._say_once(
+                "shipped", tr("MIDI: {stem} comes with the playground; a copy keeps this", stem=path.stem)
+            )
             return
         if self._unreadable:
-            self._say_once("wrong", f"MIDI: {shown(file_of(path))} has a mistake, and is not written")
+            self._say_once(
+                "wrong", tr("MIDI: {file} has a mistake, and is not written", file=shown(file_of(path)))
+            )
             return
         try:
             write_bindings(file_of(path), bindings)
         except (PlaygroundError, OSError) as error:
-            self._notices.say(f"MIDI: learned bindings last until the window is closed: {error}")
+            self._notices.say(
+                tr("MIDI: learned bindings last until the window is closed: {error}", error=error)
+            )
 
     # ── moves ────────────────────────────────────────────────────────────────
 
@@ -326,7 +340,8 @@ class Controllers:
         draft = self._session.shown
         if draft is not None and binding.path in draft.edits.locked:
             self._say_once(
-                f"lock {binding.path}", f"MIDI: {binding.path} is locked: {binding.source} sets nothing"
+                f"lock {binding.path}",
+                tr("MIDI: {path} is locked: {source} sets nothing", path=binding.path, source=binding.source),
             )
             return
         for path, other in self._session.without_buttons({binding.path: value}).items():
@@ -339,12 +354,25 @@ class Controllers:
         item = items.get(binding.path)
         if item is None or draft is None:
             near = nearest(binding.path, items)
-            self._say_once(binding.path, f"MIDI: {binding.source} sets no parameter '{binding.path}'{near}")
+            self._say_once(
+                binding.path,
+                tr(
+                    "MIDI: {source} sets no parameter '{path}'{near}",
+                    source=binding.source,
+                    path=binding.path,
+                    near=near,
+                ),
+            )
             return None
         names = part_names(item.parameter)
         if bool(names) != bool(binding.part) or (names and binding.part not in names):
-            near = nearest(binding.part, names) or "; it has no parts"
-            self._say_once(binding.target, f"MIDI: {binding.path} has no part '{binding.part}'{near}")
+            near = nearest(binding.part, names) or tr("; it has no parts")
+            self._say_once(
+                binding.target,
+                tr(
+                    "MIDI: {path} has no part '{part}'{near}", path=binding.path, part=binding.part, near=near
+                ),
+            )
             return None
         part = names.index(binding.part) if names else 0
         return item.parameter, shown_values(draft).of[binding.path], part

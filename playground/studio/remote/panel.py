@@ -5,6 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from playground.shader.parameter import part_names
+from playground.studio.language import tr
 from playground.studio.panel.parameter_list import Item
 from playground.studio.remote.controllers import Controllers
 
@@ -16,9 +17,9 @@ def draw_controllers(controllers: Controllers, item: Item) -> None:
     for binding in bound:
         imgui.text_disabled(f"MIDI {binding.source}{': ' + binding.part if binding.part else ''}")
     for part in part_names(item.parameter) or ("",):
-        if imgui.menu_item_simple(f"Learn MIDI: {part}" if part else "Learn MIDI", "move a knob"):
+        if imgui.menu_item_simple(tr("Learn MIDI") + (f": {part}" if part else ""), tr("move a knob")):
             controllers.learn(item.path, part)
-    if controllers.learning is not None and imgui.menu_item_simple("Stop learning MIDI"):
+    if controllers.learning is not None and imgui.menu_item_simple(tr("Stop learning MIDI")):
         controllers.cancel()
-    if bound and imgui.menu_item_simple("Unlearn MIDI"):
+    if bound and imgui.menu_item_simple(tr("Unlearn MIDI")):
         controllers.unlearn(item.path)

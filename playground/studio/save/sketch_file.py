@@ -34,6 +34,7 @@ from playground.sketch.save import (
 )
 from playground.sketch.toml_text import KeyPath, append, blocks, drop, newline_of, put, text_of
 from playground.studio.edits.history import TextChange
+from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.session import Session
 
@@ -263,8 +264,15 @@ class SketchFile:
         drafts = self.session.drafts
         if drafts.opening:  # what is read again is the other
             name, other = shown(drafts.shown_path), shown(drafts.path)
-            ways = f"open {name} again, or save a copy"
-            self.notices.say(f"{name} is not saved while {other} is being opened: {ways}")
+            ways = tr("open {name} again, or save a copy", name=name)
+            self.notices.say(
+                tr(
+                    "{name} is not saved while {other} is being opened: {ways}",
+                    name=name,
+                    other=other,
+                    ways=ways,
+                )
+            )
             return False
         self.save_typed()
         try:

@@ -31,6 +31,7 @@ from playground.paths import state_folder
 from playground.sketch.model import Camera
 from playground.studio.edits.edits import Edits, FileValue, StoredEdits
 from playground.studio.edits.memory import locked, typed
+from playground.studio.language import tr
 from playground.studio.start.thumbnails import shrunk
 
 FORMAT = 1
@@ -156,9 +157,15 @@ class VersionStore:
         try:
             self.folder.rename(aside)
         except OSError:
-            self.complaint = f"the versions of this sketch cannot be read nor set aside: {self.folder}{why}"
+            self.complaint = tr(
+                "the versions of this sketch cannot be read nor set aside: {folder}{why}",
+                folder=self.folder,
+                why=why,
+            )
         else:
-            self.complaint = f"the versions of this sketch cannot be read; they are in {aside}{why}"
+            self.complaint = tr(
+                "the versions of this sketch cannot be read; they are in {folder}{why}", folder=aside, why=why
+            )
 
     def texts(self, version: Version) -> dict[str, bytes]:
         """Return what a version's files hold, by their names; raise ``DataError`` where one is damaged."""
