@@ -25,6 +25,7 @@ from playground.studio.compare.compare import Compare, Mode, Stored
 from playground.studio.edits.edits import Edits, StoredEdits
 from playground.studio.edits.history import History, changes_between
 from playground.studio.edits.undo import Undo
+from playground.studio.language import tr
 from playground.studio.reload.stages import ReloadStage
 
 
@@ -141,7 +142,7 @@ class FigureView:
             undo.begin(history)
         else:
             undo.record()
-            undo.history.call(f"Lesson: {key[0]}")
+            undo.history.call(tr("Lesson: {value}", value=key[0]))
             session.drafts.read_as(texts)
             session.drafts.restore(edits)
         session.restore_view(steps, map_of(scene))
@@ -244,4 +245,4 @@ def _record_change(history: History, before: Edits, after: Edits, now: float) ->
     """Record in a sketch's history that a lesson sets it again, so that undo restores what was there."""
     was, comes = changes_between(before, after)
     if was:
-        history.record(was, comes, "Lesson", now=now)
+        history.record(was, comes, tr("Lesson"), now=now)

@@ -19,6 +19,7 @@ from playground.json_text import read_json
 from playground.paths import state_folder
 from playground.sketch.model import Value
 from playground.studio.edits.memory import set_aside
+from playground.studio.language import tr
 
 FORMAT = 1
 WIDTH = 420.0
@@ -76,7 +77,7 @@ def open_progress(path: Path) -> tuple[Progress, str]:
     except FileNotFoundError:
         return Progress(), ""
     except _UNREADABLE as error:
-        return Progress(), set_aside(path, "what was remembered of lessons", error)
+        return Progress(), set_aside(path, tr("what was remembered of lessons"), error)
 
 
 def write_progress(progress: Progress, path: Path) -> str:
@@ -87,7 +88,7 @@ def write_progress(progress: Progress, path: Path) -> str:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_file(path, text.encode("utf-8", "surrogatepass"))
     except (OSError, PlaygroundError) as error:
-        return f"where you are in the lessons cannot be remembered: {error}"
+        return tr("where you are in the lessons cannot be remembered: {error}", error=error)
     return ""
 
 

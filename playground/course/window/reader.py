@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.course.library import LANGUAGES, SOURCE, labels, preferred_language
+from playground.course.library import LANGUAGES, SOURCE, labels
 from playground.course.measures import Number, filled, measured, named_in
 from playground.course.model import (
     Block,
@@ -49,6 +49,7 @@ from playground.errors import PlaygroundError
 from playground.studio.bench import Workbench
 from playground.studio.code.open_files import unsaved
 from playground.studio.compare.compare import as_before
+from playground.studio.language import language as window_language
 from playground.studio.session import Session
 
 if TYPE_CHECKING:
@@ -211,6 +212,7 @@ class Reader:
             lesson=lambda: self.progress.lesson,
         )
         self.catalogue = Catalogue(bench.notices.say)
+        self._opened_in = ""  # the language that was asked for
         self._due = math.inf  # when what plays goes on
         self._hid = False  # the parameters' panel, to make room
 
@@ -218,8 +220,8 @@ class Reader:
 
     @property
     def language(self) -> str:
-        """The code of the language that is read."""
-        return self.progress.language if self.progress.language in LANGUAGES else preferred_language()
+        """The code of the language that is read: the window's, unless lessons were put into another."""
+        return self.progress.language if self.progress.language in LANGUAGES else window_language()
 
     def say(self, key: str, *values: object, **named: object) -> str:
         """Return a label of the window in that language, with values in its places."""
@@ -251,7 +253,8 @@ class Reader:
         names = [summary.name for summary in self.summaries]
         name = name or (self.progress.lesson if self.progress.lesson in names else next(iter(names), ""))
         if language:
-            self.progress.language = language
+            self.progress.language = "" if language == window_language() else language
+        self._opened_in = self.language
         try:
             lesson = self.catalogue.read(name, self.language, self.say("untranslated"))
         except PlaygroundError as error:
@@ -432,6 +435,8 @@ class Reader:
         self.figure.update()
         if self.lesson is None or not self.progress.shown:
             return
+        if self.language != self._opened_in:  # another was chosen for the whole window
+            self.open(self.lesson.name, show=False)
         if self.playing and self.bench.notices.now() >= self._due and not self.figure.busy:
             self._play()
         shown = self.lesson.named.get(self.figure.key[0]) if self.figure.key is not None else None
