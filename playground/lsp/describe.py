@@ -10,6 +10,7 @@ from playground.shader.outline import Declared
 from playground.shader.parameter import expected, write
 from playground.shader.widgets import WIDGETS
 from playground.sketch.model import Kernel, Parameter, Technique
+from playground.sketch.suggestions import Suggestion
 from playground.sketch.wiring import input_names, output_names
 
 
@@ -59,3 +60,16 @@ def technique(use: str, item: Technique) -> str:
         f"*{shown(item.path)}*",
     ]
     return "\n\n".join(parts)
+
+
+def suggestion(known: Suggestion) -> str:
+    """Return what is known of a name, by what it stands for."""
+    match known.origin:
+        case (Path() as path, Declared() as declaration):
+            return declared(declaration, path)
+        case Parameter() as item:
+            return parameter(item)
+        case None:
+            return known.about
+        case item:
+            return technique(known.label, item)

@@ -6,7 +6,6 @@ import re
 import threading
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -15,21 +14,17 @@ from urllib.parse import unquote, urlsplit
 from lsprotocol import types
 from pygls import uris
 
-from playground.allowed_files import SHADERS, looking_once, noting_places, reading_unsaved, root_of
+from playground.allowed_files import noting_places
 from playground.engine.process.worker import summary_of
 from playground.engine.sandbox import Request, Sandbox, SandboxReport
 from playground.errors import ContextError, Diagnostic, OpenGLFault, PlaygroundError
-from playground.paths import GLSL, SKETCHES, current_folder, without_part
-from playground.shader.source import normalised, read_text
-from playground.sketch import shader_names
-from playground.sketch.shader_names import Shader
+from playground.paths import GLSL, current_folder, without_part
+from playground.shader.source import normalised
+from playground.sketch.edited import EditedText, EditedTexts
 from playground.verify.check import check_file
 
 Units = Callable[[str], int]
 """How many units an editor counts for a text: of UTF-16, unless it has agreed to others."""
-
-_HEAD = re.compile(r"^[ \t]*format[ \t]*=", re.MULTILINE)
-_PASS = re.compile(r"^[ \t]*\[\[[ \t]*pass[ \t]*\]\]", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -73,44 +68,19 @@ class Text:
 
 
 @dataclass(frozen=True)
-class Document(Text):
+class Document(Text, EditedText):
     """An open text."""
 
     uri: str
-    path: Path  # where it is or would be saved, links followed
     version: int | None
 
-    @property
-    def is_toml(self) -> bool:
-        """Whether it is, or may become, a sketch or a technique of several passes."""
-        return self.path.suffix == ".toml"
 
-    @property
-    def is_ours(self) -> bool:
-        """Whether it is a shader, or a TOML that is a sketch or a technique and of no other program."""
-        if not self.is_toml:
-            return self.path.suffix in SHADERS
-        head = self.text.partition("\n[")[0]
-        is_sketch = self.path.name == "sketch.toml" or self.path.is_relative_to(GLSL)
-        return is_sketch or bool(_HEAD.search(head) or _PASS.search(self.text))
-
-    @property
-    def root(self) -> Path:
-        """The folder that it may include from, besides ``glsl/``."""
-        return root_for(self.path)
-
-
-def root_for(path: Path) -> Path:
-    """Return the folder that a file may include from, as ``check`` has it."""
-    return GLSL if path.is_relative_to(GLSL) and not path.is_relative_to(SKETCHES) else root_of(path)
-
-
-class Documents:
+class Documents(EditedTexts):
     """The open texts."""
 
     def __init__(self) -> None:
+        super().__init__()
         self.units: Units = lambda text: len(text.encode("utf-16-le")) // 2
-        self.folders: tuple[Path, ...] = ()  # that are open in the editor
         self._open: dict[str, Document] = {}  # by URI
 
     def __iter__(self) -> Iterator[Document]:
@@ -120,7 +90,7 @@ class Documents:
         """Add or replace an open text."""
         cached = self._open.get(uri)
         path = cached.path if cached is not None else self._path(uri, language)
-        document = self._open[uri] = Document(normalised(text), self.units, uri, path, version)
+        document = self._open[uri] = Document(path, normalised(text), self.units, uri, version)
         return document
 
     def remove(self, uri: str) -> Document | None:
@@ -142,18 +112,7 @@ class Documents:
 
     def text_of(self, path: Path) -> Text:
         """Return the text of a file, as it is open; raise ``SketchError`` where it cannot be read."""
-        return self.at(path) or Text(read_text(path), self.units)
-
-    @contextmanager
-    def reading(self) -> Iterator[None]:
-        """Take the open texts in place of what their files hold."""
-        texts = {document.path: document.text for document in self}
-        with reading_unsaved(texts), looking_once():
-            yield
-
-    def is_open_folder(self, path: Path) -> bool:
-        """Return whether a file is in a folder that is open in the editor, or is open itself."""
-        return any(path.is_relative_to(folder) for folder in self.folders) or self.at(path) is not None
+        return self.at(path) or Text(self.read(path), self.units)
 
     def _path(self, uri: str, language: str) -> Path:
         parts = urlsplit(uri)
@@ -165,17 +124,6 @@ class Documents:
             name += ".toml" if "toml" in language else ".glsl"
         folder = path.parent if path.is_absolute() and path.parent.is_dir() else None
         return (folder or next(iter(self.folders), Path.cwd())).resolve() / name
-
-
-def shader_of(document: Document, documents: Documents) -> Shader:
-    """Return what is known of an open shader."""
-    return shader_at(document.path, document.text, document.root, documents)
-
-
-def shader_at(path: Path, text: str, root: Path, documents: Documents) -> Shader:
-    """Return what is known of a shader's file, with the texts that are open in place of the files'."""
-    with documents.reading():
-        return shader_names.shader_at(path, text, root)
 
 
 # ── diagnostics ────────────────────────────────────────────────────────────────

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 
 from lsprotocol import types
 
 from playground.errors import DataError, PlaygroundError
 from playground.lsp import describe
-from playground.lsp.documents import Document, Documents, Text, shader_of
+from playground.lsp.documents import Document, Documents
 from playground.lsp.highlight import influence_text
-from playground.lsp.sketch_text import SketchText
 from playground.paths import GLSL, shown
 from playground.shader.colours import parse_hex, to_hex
 from playground.shader.header import title_of
@@ -22,11 +19,11 @@ from playground.shader.outline import outline
 from playground.shader.reserved_names import DRIVER_BOUND, RESERVED
 from playground.shader.source import find_include, read_source, read_text
 from playground.shader.widgets import WIDGETS
-from playground.sketch import toml_table
+from playground.sketch.edited import shader_of
 from playground.sketch.model import Parameter
-from playground.sketch.shader_names import library_declared
-from playground.sketch.toml_text import KeyPath, Pair
-from playground.sketch.wiring import inner
+from playground.sketch.shader_names import DeclarationSite, library_declared
+from playground.sketch.sketch_text import SketchText
+from playground.sketch.toml_suggestions import declaration_in_sketch, meaning_in_sketch
 
 _SYMBOLS = {
     "function": types.SymbolKind.Function,
@@ -35,15 +32,6 @@ _SYMBOLS = {
     "uniform": types.SymbolKind.Variable,
     "macro": types.SymbolKind.Constant,
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Target:
-    """A place that something leads to."""
-
-    path: Path
-    start: int
-    end: int
 
 
 # ── shaders ──────────────────────────────────────────────────────────────────
@@ -95,17 +83,16 @@ def hover_shader(document: Document, documents: Documents, at: int) -> str:
     return ""
 
 
-def define_shader(document: Document, documents: Documents, at: int) -> Target | None:
+def define_shader(document: Document, documents: Documents, at: int) -> DeclarationSite | None:
     """Return where what stands at a place of a shader is declared: a file, or a name in one."""
     if include := include_at(document.text, at):
         with documents.reading():
             include_path = find_include(include.name, document.path, (document.root,))
-        return Target(include_path, 0, 0) if include_path is not None else None
+            return DeclarationSite(include_path, read_text(include_path), 0, 0) if include_path else None
     word, start = word_at(document.text, at)
     if not word or not is_code(document.text, start):
         return None
-    location = shader_of(document, documents).find(word, start)
-    return Target(location.path, location.at, location.at + location.length) if location is not None else None
+    return shader_of(document, documents).find(word, start)
 
 
 def symbols_of_shader(document: Document) -> list[types.DocumentSymbol]:
@@ -130,54 +117,14 @@ def symbols_of_shader(document: Document) -> list[types.DocumentSymbol]:
 def hover_sketch(document: Document, documents: Documents, at: int) -> str:
     """Return what is known of what stands at a place of a sketch, as Markdown; "" for nothing."""
     with documents.reading():
-        sketch = SketchText(document)
-        key_path, pair = _pair_at(sketch, at)
-        if pair is None:
-            name = _header_at(document, sketch, at)
-            return (toml_table.SKETCH | toml_table.TECHNIQUE).get(name, "")
-        table, keys = _parted(key_path)
-        if keys[:1] == ("set",) and len(keys) > 1:
-            parameter = sketch.parameter(table, ".".join(keys[1:]))
-            return describe.parameter(parameter) if parameter is not None else ""
-        if keys == ("use",) and at >= pair.value:
-            technique = sketch.technique(table)
-            return describe.technique(sketch.value(key_path), technique) if technique is not None else ""
-        if keys[:1] == ("inputs",) and len(keys) > 1 and at >= pair.value:
-            name = sketch.value(key_path).partition(":")[0].partition(".")[0]
-            technique = sketch.technique_of(name)
-            return describe.technique(name, technique) if technique is not None else ""
-        head = str(table[0]) if table else ""
-        keys_of_table = toml_table.TABLES.get(head, {}) if head else toml_table.SKETCH | toml_table.TECHNIQUE
-        if keys[:1] == ("camera",) and len(keys) > 1:
-            return toml_table.CAMERA.get(keys[1], "")
-        return keys_of_table.get(keys[0], "") if len(keys) == 1 else ""
+        meaning = meaning_in_sketch(document, at)
+    return describe.suggestion(meaning) if meaning is not None else ""
 
 
-def define_sketch(document: Document, documents: Documents, at: int) -> Target | None:
+def define_sketch(document: Document, documents: Documents, at: int) -> DeclarationSite | None:
     """Return where what stands at a place of a sketch is: a technique's file, a pass, a parameter."""
     with documents.reading():
-        sketch = SketchText(document)
-        key_path, pair = _pair_at(sketch, at)
-        if pair is None:
-            return None
-        table, keys = _parted(key_path)
-        if keys == ("use",):
-            technique = sketch.technique(table)
-            return Target(Path(technique.path), 0, 0) if technique is not None else None
-        if keys[:1] == ("inputs",) and len(keys) > 1 and at >= pair.value:
-            where = sketch.value(key_path).partition(":")[0]
-            head, _, rest = where.partition(".")
-            if rest and (technique := sketch.technique_of(head)) is not None:
-                technique_inside = inner(technique, rest)
-                return Target(Path(technique_inside.path), 0, 0) if technique_inside is not None else None
-            return _table_target(document, sketch, sketch.names("pass").get(head))
-        if keys == ("preset",):
-            return _table_target(document, sketch, sketch.names("preset").get(sketch.value(key_path)))
-        if keys[:1] == ("set",) and len(keys) > 1:
-            parameter = sketch.parameter(table, ".".join(keys[1:]))
-            if parameter is not None and parameter.file:
-                return _line_target(Path(parameter.file), parameter.line, parameter.name)
-        return None
+        return declaration_in_sketch(document, at)
 
 
 def symbols_of_sketch(document: Document) -> list[types.DocumentSymbol]:
@@ -196,43 +143,6 @@ def symbols_of_sketch(document: Document) -> list[types.DocumentSymbol]:
         head = document.range(start, min(line if line >= 0 else len(document.text), max(end, start + 1)))
         symbols.append(types.DocumentSymbol(title, types.SymbolKind.Object, whole, head))
     return symbols
-
-
-def _pair_at(sketch: SketchText, at: int) -> tuple[KeyPath, Pair | None]:
-    """Return the innermost key and value that a place is in."""
-    around = [
-        (key_path, pair) for key_path, pair in sketch.places.pairs.items() if pair.key <= at <= pair.end
-    ]
-    return max(around, key=lambda item: item[1].key, default=((), None))
-
-
-def _parted(key_path: KeyPath) -> tuple[KeyPath, tuple[str, ...]]:
-    """Return a place's table, one with a header, and the keys in it."""
-    size = 0
-    if key_path and key_path[0] in toml_table.LISTS:
-        size = 2
-    elif len(key_path) > 1 and key_path[0] == "view":
-        size = 1
-    return key_path[:size], tuple(str(key) for key in key_path[size:])
-
-
-def _header_at(document: Document, sketch: SketchText, at: int) -> str:
-    row = document.position(at).line
-    rows = {document.position(header.start).line: header.keys[0] for header in sketch.places.headers}
-    return rows.get(row, "")
-
-
-def _table_target(document: Document, sketch: SketchText, table: KeyPath | None) -> Target | None:
-    pair = sketch.places.pairs.get((*table, "name")) if table is not None else None
-    return Target(document.path, pair.key, pair.end) if pair is not None else None
-
-
-def _line_target(path: Path, line: int, name: str) -> Target:
-    """Return a name on a line of a file, counted from 1."""
-    text = Text(read_text(path), len)
-    start = text.line_start(line - 1)
-    index = text.text.find(name, start)
-    return Target(path, max(index, start), max(index, start) + len(name))
 
 
 # ── colour boxes ───────────────────────────────────────────────────────────────

@@ -9,7 +9,7 @@ from pathlib import Path
 from lsprotocol import types
 
 from playground.errors import Diagnostic
-from playground.lsp.documents import Document, Documents, shader_of
+from playground.lsp.documents import Document, Documents
 from playground.paths import shown
 from playground.shader.names import Syntax, syntax_of, word_at, words
 from playground.shader.reserved_names import GLSL_WORDS, MATCHES, TOWARDS, WIRED
@@ -26,6 +26,7 @@ from playground.shader.syntax.nodes import (
     walk,
 )
 from playground.shader.syntax.symbols import Symbol
+from playground.sketch.edited import shader_of
 from playground.sketch.shader_names import Shader
 
 LEGEND = types.SemanticTokensLegend(

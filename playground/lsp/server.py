@@ -26,9 +26,9 @@ from playground.errors import Diagnostic, PlaygroundError
 from playground.lsp import explain, highlight
 from playground.lsp.complete import complete_shader, complete_sketch
 from playground.lsp.documents import Checker, Document, Documents, Text
-from playground.lsp.rename import Refused, prepare, references, rename
 from playground.lsp.traced import Tracer
 from playground.shader.names import word_at
+from playground.sketch.rename import Refused, prepare, references, rename
 from playground.sketch.shader_names import library_declared
 
 T = TypeVar("T")
@@ -301,7 +301,8 @@ def _definition(server: Server, params: types.DefinitionParams) -> types.Locatio
     if target is None:
         return None
     text = server.documents.text_of(target.path)
-    return types.Location(server.documents.uri_of(target.path), text.range(target.start, target.end))
+    where = text.range(target.at, target.at + target.length)
+    return types.Location(server.documents.uri_of(target.path), where)
 
 
 def _references(server: Server, params: types.ReferenceParams) -> list[types.Location] | None:
@@ -361,12 +362,12 @@ def _presentations(server: Server, params: types.ColorPresentationParams) -> lis
 
 
 def _prepare_rename(server: Server, params: types.PrepareRenameParams) -> types.Range | None:
-    shader = _shader_to_rename(server, params)
-    return prepare(shader[0], server.documents, shader[1])
+    document, at = _text_to_rename(server, params)
+    return document.range(*prepare(document, server.documents, at))
 
 
 def _rename(server: Server, params: types.RenameParams) -> types.WorkspaceEdit:
-    document, at = _shader_to_rename(server, params)
+    document, at = _text_to_rename(server, params)
     changes: dict[str, list[types.TextEdit]] = {}
     for path, edits in rename(document, server.documents, at, params.new_name).items():
         text = server.documents.text_of(path)
@@ -376,10 +377,10 @@ def _rename(server: Server, params: types.RenameParams) -> types.WorkspaceEdit:
     return types.WorkspaceEdit(changes=changes)
 
 
-def _shader_to_rename(server: Server, params: _Params) -> tuple[Document, int]:
+def _text_to_rename(server: Server, params: _Params) -> tuple[Document, int]:
     opened = _at(server, params)
-    if opened is None or opened[0].is_toml:
-        raise Refused("names are renamed in a shader: a parameter is renamed where it is declared")
+    if opened is None:
+        raise Refused("there is no name here that can be renamed")
     return opened
 
 

@@ -21,7 +21,7 @@ from playground.shader.reserved_names import GLSL_WORDS
 from playground.shader.syntax.nodes import Struct
 from playground.shader.syntax.types import components
 from playground.shader.widgets import WIDGETS
-from playground.sketch.model import Parameter
+from playground.sketch.model import Parameter, Technique
 from playground.sketch.shader_names import Shader, library_declared, shader_at
 
 Listed = Mapping[str, tuple[str, ...]]
@@ -32,11 +32,11 @@ class Suggestion:
     """One thing that may stand at a place."""
 
     label: str  # what is inserted
-    kind: str  # function, struct, variable, uniform, macro, keyword, property, choice, field or file
+    kind: str  # function, struct, variable, uniform, macro, keyword, property, choice, field, file, module
     detail: str = ""  # a type, a signature
     about: str = ""
     order: int = 5  # a lower one is listed first
-    origin: Parameter | tuple[Path, Declared] | None = None  # what it stands for
+    origin: Parameter | Technique | tuple[Path, Declared] | None = None  # what it stands for
     include: str = ""  # what the text must include for it
     start: int = -1  # where what it replaces begins; -1: at the identifier's beginning
 

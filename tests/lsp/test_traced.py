@@ -11,11 +11,12 @@ import pytest
 import playground
 from playground.engine.trace.live_texel import LiveTexel, live_file, write_live_texel
 from playground.engine.trace.model import Event
-from playground.lsp.documents import Documents, root_for, shader_at
+from playground.lsp.documents import Documents
 from playground.lsp.highlight import influence
 from playground.paths import NAME, SKETCHES
 from playground.shader.outline import outline
 from playground.sketch.assign import values_of
+from playground.sketch.edited import root_for, shader_at
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 

@@ -5,7 +5,7 @@ it too. A name of the top level, a macro or a member changes in every shader tha
 what those include, all overloads of a function together; a uniform's also in the sketches and techniques that
 set it. What is outside the open folders is never changed, so a name that is used there is refused.
 
-Before anything is given to the editor, each shader is resolved with the new texts: every name must mean what
+Before anything is changed, each shader is resolved with the new texts: every name must mean what
 it meant. The shaders and sketches are read, too: what could be read before must be readable still.
 """
 
@@ -17,12 +17,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from lsprotocol import types
-
 from playground.allowed_files import FAST, SHADERS, is_file, names_below, reading_unsaved
 from playground.errors import PlaygroundError
-from playground.lsp.documents import Document, Documents, root_for, shader_at, shader_of
-from playground.lsp.sketch_text import SketchText
 from playground.paths import shown
 from playground.shader.header import is_given, parse_kernel
 from playground.shader.names import Meaning, Syntax, Unit, is_code, syntax_of, word_at, words
@@ -31,9 +27,11 @@ from playground.shader.source import read_source, read_text
 from playground.shader.syntax.influence import ENTRY
 from playground.shader.syntax.nodes import For, Function, Node, While
 from playground.sketch.assign import find_targets
+from playground.sketch.edited import EditedText, EditedTexts, root_for, shader_at, shader_of
 from playground.sketch.load import load_with
 from playground.sketch.model import Graph, Parameter, Technique
 from playground.sketch.shader_names import Shader
+from playground.sketch.sketch_text import SketchText
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_text import TomlPlaces
 
@@ -47,41 +45,43 @@ class Refused(Exception):
     """Why a name is not renamed, in a message."""
 
 
-def prepare(document: Document, documents: Documents, at: int) -> types.Range:
+def prepare(opened: EditedText, texts: EditedTexts, at: int) -> tuple[int, int]:
     """Return where the name at a place is; raise ``Refused`` where it cannot be renamed."""
-    name, start = _word(document, at)
-    _meaning(shader_of(document, documents), name, start)
-    return document.range(start, start + len(name))
+    name, start = _word(opened, at)
+    _meaning(shader_of(opened, texts), name, start)
+    return start, start + len(name)
 
 
-def rename(document: Document, documents: Documents, at: int, new: str) -> dict[Path, list[Edit]]:
+def rename(opened: EditedText, texts: EditedTexts, at: int, new: str) -> dict[Path, list[Edit]]:
     """Return the edits, by file, that rename what is at a place; raise ``Refused`` where that is not safe."""
-    name, start = _word(document, at)
+    name, start = _word(opened, at)
     _check_new(new)
     if new == name:
         return {}
-    return _Rename(document, documents, name, start, new).edits()
+    return _Rename(opened, texts, name, start, new).edits()
 
 
-def references(document: Document, documents: Documents, at: int) -> dict[Path, list[tuple[int, int]]]:
+def references(opened: EditedText, texts: EditedTexts, at: int) -> dict[Path, list[tuple[int, int]]]:
     """Return the places, by file, of what is named at a place, in every shader that can see it."""
     try:
-        name, start = _word(document, at)
-        found = _Rename(document, documents, name, start, name)
+        name, start = _word(opened, at)
+        found = _Rename(opened, texts, name, start, name)
     except Refused:
         return {}
     return {path: [(place, place + len(name)) for place in sorted(places)] for path, places in found.places()}
 
 
-def _word(document: Document, at: int) -> tuple[str, int]:
-    name, start = word_at(document.text, at)
-    if not name or not is_code(document.text, start):
+def _word(opened: EditedText, at: int) -> tuple[str, int]:
+    if opened.is_toml:
+        raise Refused("names are renamed in a shader: a parameter is renamed where it is declared")
+    name, start = word_at(opened.text, at)
+    if not name or not is_code(opened.text, start):
         raise Refused("there is no name here that can be renamed")
     if name in GLSL_WORDS:
         raise Refused(f"'{name}' is a word of GLSL itself")
-    if any(word.start == start and word.is_parameter for word in words(document.text)):
+    if any(word.start == start and word.is_parameter for word in words(opened.text)):
         raise Refused(f"'{name}' is a macro's parameter; those are not renamed")
-    if not any(word.start == start for word in words(document.text)):
+    if not any(word.start == start for word in words(opened.text)):
         raise Refused("there is no name here that can be renamed")
     return name, start
 
@@ -143,12 +143,12 @@ class _User:
 class _Rename:
     """One name, in every file that can see it."""
 
-    def __init__(self, document: Document, documents: Documents, name: str, start: int, new: str) -> None:
-        self.documents = documents
+    def __init__(self, opened: EditedText, texts: EditedTexts, name: str, start: int, new: str) -> None:
+        self.texts = texts
         self.name, self.new = name, new
-        around = [folder for folder in documents.folders if document.path.is_relative_to(folder)]
-        self.folder = around[0] if around else document.root
-        self.shader = shader_of(document, documents)
+        around = [folder for folder in texts.folders if opened.path.is_relative_to(folder)]
+        self.folder = around[0] if around else opened.root
+        self.shader = shader_of(opened, texts)
         self.meaning = _meaning(self.shader, name, start)
         self.kind = self.meaning[0]
         self.parameter = self.shader.parameter(name) if self.kind == "top" else None
@@ -255,24 +255,24 @@ class _Rename:
 
     def _shader(self, path: Path) -> Shader:
         if path not in self._shaders:
-            with self.documents.reading():
+            with self.texts.reading():
                 try:
                     text = read_text(path)
                 except PlaygroundError:
                     text = ""
-            self._shaders[path] = shader_at(path, text, root_for(path), self.documents)
+            self._shaders[path] = shader_at(path, text, root_for(path), self.texts)
         return self._shaders[path]
 
     def _files(self, endings: tuple[str, ...]) -> list[Path]:
         names = names_below((self.folder,), endings)
-        folders = {self.folder / name for name in names} | {document.path for document in self.documents}
+        folders = {self.folder / name for name in names} | {opened.path for opened in self.texts}
         return sorted(path for path in folders if path.name.endswith(endings) and path != self.shader.path)
 
     def _is_ours(self, path: Path) -> bool:
-        return path.is_relative_to(self.folder) or self.documents.is_open_folder(path)
+        return path.is_relative_to(self.folder) or self.texts.is_open_folder(path)
 
     def _outside(self, path: Path) -> str:
-        syntax = syntax_of(self.documents.text_of(path).text)
+        syntax = syntax_of(self.texts.read(path))
         what = "is declared" if syntax.declares(self.name) else "is used"
         return f"'{self.name}' {what} in {shown(path)}, which is not in the open folder"
 
@@ -316,7 +316,7 @@ class _Rename:
             raise Refused(f"'{self.new}' is a name in {self._location(path, at)} already")
 
     def _location(self, path: Path, at: int) -> str:
-        text = self.documents.text_of(path).text
+        text = self.texts.read(path)
         return f"{shown(path)}:{text.count(chr(10), 0, at) + 1}"
 
     def _check_variants(self, changed: Iterable[Path]) -> None:
@@ -349,25 +349,25 @@ class _Rename:
         assert self.parameter is not None
         edits_by_file: dict[Path, list[Edit]] = {}
         files = set(changed)
-        with self.documents.reading():
+        with self.texts.reading():
             for path in self._files((".toml",)):
                 try:
-                    document = self.documents.at(path) or self._unopened(path)
+                    opened = self.texts.at(path) or self._unopened(path)
                 except PlaygroundError:
                     continue
-                if document.is_ours and (
-                    edits := edits_in_toml(document, self.parameter, files, self.name, self.new)
+                if opened.is_ours and (
+                    edits := edits_in_toml(opened, self.parameter, files, self.name, self.new)
                 ):
                     edits_by_file[path] = edits
         return edits_by_file
 
-    def _unopened(self, path: Path) -> Document:
-        return Document(read_text(path), self.documents.units, "", path, None)
+    def _unopened(self, path: Path) -> EditedText:
+        return EditedText(path, read_text(path))
 
     def _verify(self, edits_by_file: Mapping[Path, list[Edit]]) -> None:
         """Raise ``Refused`` where something that can be read now could not be read with the edits."""
-        open_texts = {document.path: document.text for document in self.documents}
-        with self.documents.reading():
+        open_texts = {opened.path: opened.text for opened in self.texts}
+        with self.texts.reading():
             new = {path: _edited(read_text(path), edits) for path, edits in edits_by_file.items()}
         tomls = self._files((".toml",)) if self.parameter is not None else []
         before = {path: why for path in tomls if (why := _load(path, open_texts)) is not None}
@@ -407,7 +407,7 @@ def _load(path: Path, texts: Mapping[Path, str]) -> str | None:
     """Return why a sketch cannot be loaded; None where it can, and for what is none."""
     with reading_unsaved(texts):
         try:
-            if not Document(read_text(path), len, "", path, None).is_ours:
+            if not EditedText(path, read_text(path)).is_ours:
                 return None
             load_with(Techniques(), path)
         except PlaygroundError as error:
@@ -440,13 +440,13 @@ _QUOTED = re.compile(r"\"([^\"\n]*)\"|'([^'\n]*)'")
 
 
 def edits_in_toml(
-    document: Document, parameter: Parameter, files: Collection[Path], name: str, new: str
+    opened: EditedText, parameter: Parameter, files: Collection[Path], name: str, new: str
 ) -> list[Edit]:
     """Return the edits that rename a parameter in a sketch's or a technique's text.
 
     ``files`` are those that declare it or read it; ``name`` is what it is called, ``new`` what it will be.
     """
-    sketch = SketchText(document)
+    sketch = SketchText(opened)
     edits: list[Edit] = []
 
     def is_meant(technique: Technique | None, path: str) -> bool:
@@ -469,13 +469,13 @@ def edits_in_toml(
     for table, path, pair in sketch.settings():
         own = table[:1] in (("pass",), ("view",))
         if is_meant(sketch.technique(table), path) if own else is_meant_in_sketch(path):
-            key = document.text[pair.key : pair.value]
+            key = opened.text[pair.key : pair.value]
             at = [match.start() for match in re.finditer(rf"(?<!\w){name}(?!\w)", key)][-1]
             edits.append((pair.key + at, pair.key + at + len(name), new))
     for key_path, pair in sketch.places.pairs.items():
         if key_path != ("main",) and key_path[:1] != ("parameters",):
             continue
-        for match in _QUOTED.finditer(document.text, pair.value, pair.end):
+        for match in _QUOTED.finditer(opened.text, pair.value, pair.end):
             text = match[1] if match[1] is not None else match[2]
             if is_meant_in_sketch(text):
                 end = match.end() - 1

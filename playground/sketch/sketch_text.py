@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from playground.errors import PlaygroundError
-from playground.lsp.documents import Document
 from playground.sketch.assign import find_targets
+from playground.sketch.edited import EditedText
 from playground.sketch.load import load_with
 from playground.sketch.model import Parameter, Sketch, Technique
 from playground.sketch.techniques import Techniques
@@ -115,11 +115,11 @@ def _inside(before: str) -> tuple[tuple[str, ...], str, bool]:
 class SketchText:
     """A sketch's or a technique's text: its passes and what fills them, as far as that can be read."""
 
-    def __init__(self, document: Document, text: str | None = None) -> None:
-        """Read it; ``text`` instead of the document's where one line of that is left out."""
-        self.path = document.path
-        self.root = document.path.parent
-        self.text = document.text if text is None else text
+    def __init__(self, opened: EditedText, text: str | None = None) -> None:
+        """Read it; ``text`` instead of the opened one's where one line of that is left out."""
+        self.path = opened.path
+        self.root = opened.path.parent
+        self.text = opened.text if text is None else text
         self.places = TomlPlaces(self.text)
         self._techniques = Techniques()
 
