@@ -41,7 +41,7 @@ _OWN_PRAGMA = re.compile(r"#\s*pragma\s+(?:kernel|draw|compute)\b")
 _FOLLOWS = re.compile(r"//!.*?\bfollows\(([^)\n]*)\)")
 
 
-class Refused(Exception):
+class Refused(PlaygroundError):
     """Why a name is not renamed, in a message."""
 
 

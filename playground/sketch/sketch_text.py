@@ -63,6 +63,10 @@ def cursor_at(text: str, at: int) -> Cursor:
         keys, is_value = around, True
     quoted = len(re.findall(r"(?<!\\)\"", rest)) % 2 == 1
     word = rest.rpartition('"')[2] if quoted else re.split(r"[\s,\[{=]", rest)[-1]
+    keys = tuple(part for key in keys for part in key.split("."))
+    if not is_value and not quoted:  # set.octaves
+        *around, word = word.split(".")
+        keys += tuple(around)
     return Cursor(table, keys, is_value, False, word, at - len(word), quoted)
 
 

@@ -6,6 +6,7 @@ texts that are open read in place of their files (``EditedTexts.reading``).
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -34,10 +35,15 @@ _CHOICES: dict[str, tuple[object, ...]] = {
 """Key → what it may be."""
 
 
+_QUOTED = re.compile(r"\"(?:[^\"\\]|\\.)*(?:\"|$)|'[^']*(?:'|$)")
+
+
 def suggestions_in_sketch(opened: EditedText, at: int) -> list[Suggestion]:
     """Return what may stand at a place of a sketch or of a technique of several passes."""
-    cursor = cursor_at(opened.text, at)
     row = opened.text.rfind("\n", 0, at) + 1
+    if "#" in _QUOTED.sub("", opened.text[row:at]):  # a comment
+        return []
+    cursor = cursor_at(opened.text, at)
     end = opened.text.find("\n", at)
     end = end if end >= 0 else len(opened.text)
     others = SketchText(opened, f"{opened.text[:row]}{' ' * (end - row)}{opened.text[end:]}")

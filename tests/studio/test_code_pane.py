@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
+from playground.paths import GLSL
 from playground.sketch.shader_names import library_declared
 from playground.studio.code.open_files import Editing, is_changed, unsaved
 from playground.studio.code.panel import typing
@@ -243,9 +245,9 @@ def test_nothing_is_completed_in_a_comment(pane: Pane) -> None:
 def test_a_name_is_explained_and_leads_to_its_declaration(pane: Pane) -> None:
     pane.place(5, 14)
     files, path = pane.bench.files, pane.session.path.parent / "terrain.glsl"
-    known = files.meaning(path, TERRAIN, 4, 13, "level")
+    known = files.names.meaning(path, TERRAIN, TERRAIN.index("level;") + 2)
     assert known is not None and known.detail == "float" and known.origin.tooltip == "How high the hills are"  # type: ignore[union-attr]
-    assert files.meaning(path, TERRAIN, 4, 6, "return") is None
+    assert files.names.meaning(path, TERRAIN, TERRAIN.index("return") + 2) is None
     pane.key(imgui.Key.f12)
     pane.run_frames(3)
     at = pane.editor().get_main_cursor_position()
@@ -253,6 +255,107 @@ def test_a_name_is_explained_and_leads_to_its_declaration(pane: Pane) -> None:
     pane.place(6, 1)
     pane.key(imgui.Key.f12)
     assert "no declaration" in pane.bench.notices.items[-1].text
+
+
+def test_a_sketch_is_completed_and_explained(pane: Pane, folder: Path) -> None:
+    """A technique's path by a part of it, the quote closed; a parameter of it; nothing in a comment."""
+    sketch = folder / "sketch.toml"
+    files, text = pane.bench.files, sketch.read_text(encoding="utf-8")
+    files.open(sketch, 1, 1, here=True)
+    pane.run_frames(3)
+    pane.type('# use = "fbm')
+    pane.key(imgui.Key.tab)
+    assert "generation/" not in pane.editor("sketch.toml").get_text()
+    pane.editor("sketch.toml").set_text('format = 1\n[[pass]]\nname = "hills"\n')
+    files.open(sketch, 4, 1, here=True)
+    pane.run_frames(3)
+    pane.type('use = "tion/fbm')
+    pane.key(imgui.Key.tab)
+    assert pane.editor("sketch.toml").get_line_text(3) == 'use = "generation/fbm"'
+    pane.key(imgui.Key.end)
+    pane.key(imgui.Key.enter)
+    pane.type("set.oct")
+    pane.key(imgui.Key.tab)
+    assert pane.editor("sketch.toml").get_line_text(4) == "set.octaves"
+    text = pane.editor("sketch.toml").get_text().replace("set.octaves", "set.octaves = 3")
+    known = files.names.meaning(sketch, text, text.index("octaves") + 2)
+    assert known is not None and known.detail == "int" and known.label == "octaves"
+    site = files.names.declaration(sketch, text, text.index("fbm") + 1)
+    assert site is not None and site.path.parent.name == "generation"
+
+
+# ── new names ─────────────────────────────────────────────────────────────────
+
+
+def rename(pane: Pane, line: int, column: int, new: str) -> None:
+    pane.place(line, column)
+    pane.key(imgui.Key.f2)
+    pane.run_frames(3)
+    pane.type(new)
+    pane.key(imgui.Key.enter)
+
+
+def test_a_parameter_is_renamed_in_all_files_as_one_step(pane: Pane, folder: Path) -> None:
+    """In the kernel, in a file that it includes and in the sketch; one undo takes all of it back."""
+    (folder / "shape.glsl").write_text("float shape() { return level * 0.5; }\n", encoding="utf-8")
+    uses = TERRAIN.replace("float kernel", '#include "shape.glsl"\nfloat kernel').replace(
+        "level;", "shape();"
+    )
+    sketch = folder / "sketch.toml"
+    text = sketch.read_text(encoding="utf-8").replace(
+        'use = "./terrain"', 'use = "./terrain"\nset.level = 0.5'
+    )
+    (folder / "terrain.glsl").write_text(uses, encoding="utf-8")
+    sketch.write_text(text, encoding="utf-8")
+    pane.session.drafts.reload()
+    pane.bench.files.take_saved({folder / "terrain.glsl", sketch})
+    pane.run_frames(4)
+    assert pane.height() == 0.25
+    rename(pane, 3, 17, "rise")
+    pane.run_frames(WAITS)
+    texts = {e.text.path.name: e.view.written() for e in pane.bench.files.editing if e.view is not None}
+    assert texts["terrain.glsl"] == uses.replace("level", "rise")
+    assert texts["shape.glsl"] == "float shape() { return rise * 0.5; }\n"
+    assert texts["sketch.toml"] == text.replace("level", "rise")
+    assert not pane.bench.problems.all and pane.height() == 0.25
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    pane.run_frames(WAITS)
+    texts = {e.text.path.name: e.view.written() for e in pane.bench.files.editing if e.view is not None}
+    assert texts["terrain.glsl"] == uses and texts["sketch.toml"] == text and "level" in texts["shape.glsl"]
+    assert not pane.bench.problems.all and not unsaved(pane.bench.files.editing)
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.y)
+    assert all("rise" in e.view.written() for e in pane.bench.files.editing if e.view is not None)
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "new", "why"),
+    [
+        (4, 22, "level", "means something else|already"),
+        (3, 17, "for", "word of GLSL"),
+        (3, 17, "2b", "is no name"),
+    ],
+)
+def test_a_name_that_cannot_be_says_why_and_stays(
+    pane: Pane, line: int, column: int, new: str, why: str
+) -> None:
+    rename(pane, line, column, new)
+    assert pane.editor().get_text() == TERRAIN
+    view = pane.tab("terrain.glsl").view
+    assert re.search(why, view.renaming.message)  # type: ignore[union-attr]
+    pane.key(imgui.Key.escape)
+    pane.type("x")
+    assert view.renaming is None and pane.editor().get_text() != TERRAIN, "the text has the keys again"  # type: ignore[union-attr]
+
+
+def test_names_that_are_not_the_sketch_s_own_stay(pane: Pane) -> None:
+    pane.place(5, 7)
+    pane.key(imgui.Key.f2)
+    assert "word of GLSL" in pane.bench.notices.items[-1].text
+    shipped = GLSL / next(iter(library_declared().values()))[0][0]
+    pane.bench.files.open(shipped, 1, 1, here=True)
+    pane.run_frames(4)
+    pane.key(imgui.Key.f2)
+    assert "not the sketch's own" in pane.bench.notices.items[-1].text
 
 
 def test_the_list_of_errors_does_not_open_while_code_is_typed(pane: Pane, folder: Path) -> None:

@@ -9,15 +9,14 @@ from __future__ import annotations
 
 import os
 import shutil
-import threading
 import time
 from collections.abc import Callable, Collection, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-from playground.allowed_files import TEXTS, looking_once, reading_unsaved, root_of, signature
+from playground.allowed_files import TEXTS, signature
 from playground.errors import DataError, Diagnostic, PlaygroundError
 from playground.files import partial_file, read_regular, reason
 from playground.memo import INTERFACE
@@ -25,14 +24,12 @@ from playground.paths import GLSL, SKETCHES, shown, without_part
 from playground.shader.libraries import libraries, library_around
 from playground.sketch.model import Sketch
 from playground.studio.code.editors import Opener, find_editor
+from playground.studio.code.names import Names
 from playground.studio.code.unsaved_texts import KeptTexts, hash_of_text
 from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named
-
-if TYPE_CHECKING:
-    from playground.sketch.suggestions import Suggestion
 
 MAX_FILE_BYTES = 8 * 2**20
 """Bytes that a file may have."""
@@ -183,17 +180,6 @@ def typed_in(editing: Editing) -> str | None:
     return view.written() if view is not None and view.changed else None
 
 
-def _read_library() -> None:
-    from playground.sketch.shader_names import library_declared
-
-    library_declared()
-
-
-def _offset(text: str, line: int, column: int) -> int:
-    """Return where a place is in a text; line and column from 0."""
-    return sum(len(each) + 1 for each in text.split("\n")[:line]) + column
-
-
 def own_files(sketch: Sketch) -> list[Path]:
     """Return the texts of a sketch that are its own: its file, then the kernels in its folder."""
     main, folder = Path(sketch.file), Path(sketch.folder)
@@ -225,6 +211,14 @@ MAX_TABS = 8
 
 
 @dataclass
+class PaneKeys:
+    """Whether the code pane has the keys."""
+
+    held: bool = False
+    asked_at: int = -100  # the frame in which it was asked to take them
+
+
+@dataclass
 class OpenFiles:
     """The files that are open in the code pane, and what opens others."""
 
@@ -237,14 +231,15 @@ class OpenFiles:
     take_typed: Callable[[Path, str | None], None] = lambda path, text: None  # draws it; None: the file
     show: Callable[[], None] = lambda: None  # opens the code pane
     copy_in: Callable[[Path], None] = lambda path: None  # makes a file of the library the sketch's own
+    names: Names = field(init=False)
     draws_in: float | None = None  # [s] until what is typed is drawn; None: it is
     jumps: bool = False  # the pane is to show ``current``
-    has_keys: bool = False  # the pane
-    asked_at: int = -100  # the frame in which it was asked to take them
+    keys: PaneKeys = field(default_factory=PaneKeys)
     sketch: Sketch | None = None  # that is shown
     _followed: tuple[Path | None, bool] = (None, False)
-    _is_prepared: bool = False
-    _known: tuple[object, Suggestion | None] = (None, None)  # of the word that was asked for last
+
+    def __post_init__(self) -> None:
+        self.names = Names(self._typed)
 
     # ── opening ──────────────────────────────────────────────────────────────
 
@@ -298,11 +293,9 @@ class OpenFiles:
             kept = [e for e in self.editing if e.text.path in files or is_changed(e) or e.focus]
             self.editing[:] = kept
         for file in files:
-            if self.at(file) is None and file.is_file():
+            if file.is_file():
                 with suppress(PlaygroundError):
-                    editing = self._read(file)
-                    editing.focus = False
-                    self.editing.append(editing)
+                    self.tab_of(file)
         if self.current is None or all(e is not self.current for e in self.editing):
             self.current = next((e for e in self.editing if e.text.path.suffix != ".toml"), None)
             self.current = self.current or next(iter(self.editing), None)
@@ -409,56 +402,23 @@ class OpenFiles:
                     note = "{file} was saved by others; undo brings back what was typed"
                     self.notices.say(tr(note, file=text.path.name))
 
-    def prepare(self) -> None:
-        """Read what the library declares, in the background: the first completion need not wait for it."""
-        if not self._is_prepared:
-            self._is_prepared = True
-            threading.Thread(target=_read_library, name="library", daemon=True).start()
-
-    def suggest(self, path: Path, text: str, at: int) -> list[Suggestion]:
-        """Return what may stand at a place of an open kernel's text; nothing in a sketch's TOML."""
-        if path.suffix == ".toml":
-            return []
-        from playground.engine.meshes import MESHES
-        from playground.engine.sources import SOURCES
-        from playground.sketch.suggestions import suggestions  # reads syntax, which a start does without
-
-        listed = {"mesh": tuple(MESHES), "name": tuple(SOURCES)}
-        try:
-            with reading_unsaved({**self._typed(), path: text}), looking_once():
-                return suggestions(path, text, root_of(path), at, listed)
-        except PlaygroundError:
-            return []
-
-    def meaning(self, path: Path, text: str, line: int, column: int, word: str) -> Suggestion | None:
-        """Return what is known of a word at a place of a kernel's text, both from 0; None for nothing."""
-        from playground.shader.names import word_at
-
-        key = path, text, line, word
-        if self._known[0] != key:
-            at = _offset(text, line, column)
-            end = word_at(text, at)[1] + len(word)
-            known = (s for s in self.suggest(path, text, end) if s.label == word and s.kind != "keyword")
-            self._known = key, next(known, None)
-        return self._known[1]
-
-    def open_declaration(self, path: Path, text: str, line: int, column: int) -> None:
-        """Open the place where the name at a place of a kernel's text, both from 0, is declared."""
-        from playground.shader.names import word_at
-        from playground.sketch.shader_names import shader_at
-
-        at = _offset(text, line, column)
-        word, start = word_at(text, at)
-        site = None
-        with reading_unsaved({**self._typed(), path: text}), looking_once(), suppress(PlaygroundError):
-            if word and path.suffix != ".toml":
-                site = shader_at(path, text, root_of(path)).find(word, start)
+    def open_declaration(self, path: Path, text: str, at: int) -> None:
+        """Open the place where what stands at a place of an open text is declared."""
+        site = self.names.declaration(path, text, at)
         if site is None:
-            self.notices.say(tr("no declaration of {name} is known here", name=word or "…"))
+            self.notices.say(tr("no declaration is known here"))
             return
         before = site.text[: site.at]
-        column = site.at - before.rfind("\n")
-        self.open(site.path, before.count("\n") + 1, column, here=True)
+        self.open(site.path, before.count("\n") + 1, site.at - before.rfind("\n"), here=True)
+
+    def tab_of(self, path: Path) -> Editing:
+        """Return the tab of a file, a new one behind the others where it has none; raise ``DataError``."""
+        editing = self.at(path)
+        if editing is None:
+            editing = self._read(path)
+            editing.focus = False
+            self.editing.append(editing)
+        return editing
 
     def _typed(self) -> dict[Path, str]:
         """Return what is typed in open files and not saved."""

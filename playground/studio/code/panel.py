@@ -13,12 +13,13 @@ from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import imgui_color_text_edit as text_edit
 
-from playground.errors import Diagnostic
+from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import shown, without_part
 from playground.shader.syntax.tokens import without_comments
 from playground.studio import theme
@@ -113,7 +114,8 @@ class _Completion:
 
     found: list[Suggestion] = field(default_factory=list)
     at: int = 0  # which is chosen
-    prefix: str = ""
+    prefix: str = ""  # what is typed of it
+    end: text_edit.TextEditor.DocPos = field(default_factory=text_edit.TextEditor.DocPos)  # behind that
     is_closed: bool = True  # until the next letter of a word
 
     def close(self) -> None:
@@ -122,6 +124,16 @@ class _Completion:
 
 
 @dataclass
+class _Renaming:
+    """The field that takes a new name."""
+
+    at: int  # where the name begins in the text
+    new: str
+    message: str = ""  # why the last one was refused
+    is_open: bool = False
+
+
+@dataclass(eq=False)
 class _View:
     """The editor of one open file."""
 
@@ -137,6 +149,9 @@ class _View:
     is_light: bool | None = None  # its colours
     focused_for: int = 0  # frames for which it has had the keys
     completion: _Completion = field(default_factory=_Completion)
+    renaming: _Renaming | None = None
+    shared: list[dict[_View, tuple[int, int]]] = field(default_factory=list)
+    """Steps that changed several files: each one's undo index before and after."""
     sliders: list[Area] = field(default_factory=list)  # over the text: left, top, right, bottom
 
     @property
@@ -158,23 +173,66 @@ class _View:
         self.editor.set_read_only_enabled(is_fixed)
         self.note_step(before)
 
+    def apply(self, edits: Sequence[tuple[int, int, str]]) -> tuple[int, int]:
+        """Replace parts of the text as one step; return its undo index before and after."""
+        text, at = self.written(), self.editor.get_main_cursor_position()
+        before = self.editor.get_undo_index()
+        for start, end, new in sorted(edits, reverse=True):
+            self.editor.replace_section_text(_place_of(text, start), _place_of(text, end), new)
+        length = len(self.editor.get_line_text(at.line))
+        self.editor.set_cursor(_Pos(at.line, min(at.index, length)))
+        self.note_step(before)
+        self.marked = (None, self.marked[1])  # what is replaced has lost its markers
+        self.waits, self.typed_at = True, imgui.get_time()
+        return before, self.index
+
     def note_saved(self) -> None:
         self.saved_at = self.editor.get_undo_index()
         self.waits = False
 
     def undo(self) -> None:
-        """Undo what was typed since the last end of a word, pause or other change."""
+        """Undo what was typed since the last end of a word, pause or other change.
+
+        What changed other files with this one is undone in those, too, where nothing was typed since.
+        """
+        now = self.editor.get_undo_index()
+        step = next((step for step in self.shared if step[self][1] == now), {self: (0, now)})
+        for view, (_, after) in step.items():
+            if view.editor.get_undo_index() == after:
+                view._undo()
+                view._note_moved(self)
+
+    def redo(self) -> None:
+        """Do again what ``undo`` took back last."""
+        now = self.editor.get_undo_index()
+        step = next((step for step in self.shared if step[self][0] == now), {self: (now, 0)})
+        for view, (before, _) in step.items():
+            if view.editor.get_undo_index() == before:
+                view._redo()
+                view._note_moved(self)
+
+    def _note_moved(self, by: _View) -> None:
+        """Have the text drawn that an undo in another file has changed."""
+        if by is not self:
+            self.index = self.editor.get_undo_index()
+            self.waits, self.typed_at = True, imgui.get_time()
+
+    def _undo(self) -> None:
         at = bisect_left(self.steps, self.editor.get_undo_index())
         goal = self.steps[at - 1] if at else 0
         while self.editor.can_undo() and self.editor.get_undo_index() > goal:
             self.editor.undo()
 
-    def redo(self) -> None:
-        """Do again what ``undo`` took back last."""
+    def _redo(self) -> None:
         at = bisect_right(self.steps, self.editor.get_undo_index())
         goal = self.steps[at] if at < len(self.steps) else None
         while self.editor.can_redo() and (goal is None or self.editor.get_undo_index() < goal):
             self.editor.redo()
+
+    def offset(self, place: text_edit.TextEditor.DocPos) -> int:
+        """Return where a place is in the text."""
+        lines = self.written().split("\n")[: place.line]
+        return sum(len(line) + 1 for line in lines) + place.index
 
     def follow(self, now: float) -> bool:
         """Take in what was typed in the last frame; return whether there was anything."""
@@ -182,6 +240,7 @@ class _View:
         if index == self.index:
             return False
         if index > self.index and index not in self.steps:  # else it was undone, or done again
+            self._forget_shared(self.index)
             begins = [at for at in range(self.index, index) if self._begins_word(index - at - 1)]
             if now - self.typed_at > _PAUSE and self.index not in begins:
                 begins.insert(0, self.index)
@@ -192,8 +251,13 @@ class _View:
 
     def note_step(self, before: int) -> None:
         """Make what changed since an undo index a step of undo of its own."""
+        self._forget_shared(before)
         self.index = self.editor.get_undo_index()
         self.steps = [*(step for step in self.steps if step < before), before, self.index]
+
+    def _forget_shared(self, index: int) -> None:
+        """Forget the steps of several files that were undone: what is typed takes their place."""
+        self.shared = [step for step in self.shared if step[self][1] <= index]
 
     def _begins_word(self, since: int) -> bool:
         """Return whether the letter typed before the last ``since`` begins a line or a word.
@@ -203,6 +267,11 @@ class _View:
         at = self.editor.get_main_cursor_position()
         before = self.editor.get_line_text(at.line)[: max(at.index - since, 0)]
         return not before.strip() or re.search(r"\S\s$|[^\w\s]\w$", before) is not None
+
+
+def _place_of(text: str, offset: int) -> text_edit.TextEditor.DocPos:
+    start = text.rfind("\n", 0, offset) + 1
+    return _Pos(text.count("\n", 0, offset), offset - start)
 
 
 def _view_of(editing: Editing) -> _View:
@@ -261,7 +330,7 @@ def draw_code(files: OpenFiles, problems: Problems, look: Theme, tracing: Tracin
     waiting = [e for e in files.editing if isinstance(e.view, _View) and e.view.waits]
     for editing in waiting:
         view = _view_of(editing)
-        if imgui.get_time() - view.typed_at >= PATIENCE or editing is not seen:
+        if imgui.get_time() - view.typed_at >= PATIENCE:
             view.waits = False
             files.draw_typed(editing)
     left = [PATIENCE - imgui.get_time() + view.typed_at for e in waiting if (view := _view_of(e)).waits]
@@ -276,13 +345,13 @@ def _take_or_leave_keys(files: OpenFiles) -> None:
     now, all_of_it = imgui.get_frame_count(), imgui.HoveredFlags_.root_and_child_windows
     hovered = imgui.is_window_hovered(all_of_it | imgui.HoveredFlags_.allow_when_blocked_by_active_item)
     if any(editing.focus for editing in files.editing) or (imgui.is_mouse_clicked(0) and hovered):
-        files.asked_at = now
-    is_new = now - files.asked_at <= _JUST
+        files.keys.asked_at = now
+    is_new = now - files.keys.asked_at <= _JUST
     if not imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
-        files.has_keys = files.has_keys and is_new
-    elif files.has_keys or is_new:
-        files.has_keys = True
-        files.prepare()
+        files.keys.held = files.keys.held and is_new
+    elif files.keys.held or is_new:
+        files.keys.held = True
+        files.names.prepare()
     else:
         imgui.set_window_focus(None)
 
@@ -321,7 +390,7 @@ def close_completion(files: OpenFiles) -> bool:
 def give_back_keys(files: OpenFiles) -> None:
     """Give the keys back to the picture."""
     imgui.set_window_focus(None)
-    files.has_keys, files.asked_at = False, -_JUST - 1
+    files.keys.held, files.keys.asked_at = False, -_JUST - 1
     for editing in files.editing:
         if isinstance(editing.view, _View):
             editing.view.focused_for = 0
@@ -375,7 +444,7 @@ def _draw_text(
     view.focused_for = view.focused_for + 1 if focused and not editing.focus else 0
     _mark(editing, view, problems)
     _draw_bar(editing, view, files, look)
-    if focused:
+    if focused and view.renaming is None:
         _take_keys(editing, view, files)
         _choose_completion(view)
     if editing.focus:
@@ -388,6 +457,7 @@ def _draw_text(
         view.editor.set_focus()  # after a click on a tab or a button
     if focused and not imgui.is_any_item_active():  # Enter in the search field finds
         _indent(view)
+    view.editor.set_text_context_menu_callback(lambda asked: _draw_menu(editing, view, files, asked.pos))
     below = imgui.get_text_line_height_with_spacing() if view.marked[1] else 0.0
     with look.font(look.code), styled({imgui.Col_.child_bg: theme.colour(theme.palette.ground)}):
         mouse = imgui.get_mouse_pos()
@@ -405,6 +475,7 @@ def _draw_text(
         view.waits = True
         _complete(editing, view, files)
     _draw_completion(view, look)
+    _draw_renaming(editing, view, files, look)
 
 
 def _take_keys(editing: Editing, view: _View, files: OpenFiles) -> None:
@@ -416,8 +487,9 @@ def _take_keys(editing: Editing, view: _View, files: OpenFiles) -> None:
                 imgui.internal.set_key_owner(key, _OWNER, imgui.internal.InputFlagsPrivate_.lock_this_frame)
                 (view.redo if imgui.get_io().key_shift else act)()
     if imgui.is_key_pressed(imgui.Key.f12, False):
-        at = view.editor.get_main_cursor_position()
-        files.open_declaration(editing.text.path, view.written(), at.line, at.index)
+        _open_declaration(editing, view, files)
+    if imgui.is_key_pressed(imgui.Key.f2, False):
+        _begin_renaming(editing, view, files)
     imgui.get_io().want_text_input = True  # keys are this editor's, not the picture's
 
 
@@ -616,6 +688,8 @@ def _draw_mistake(view: _View, look: Theme) -> None:
 
 _MOST = 9  # rows of what may stand there
 _PREFIX = re.compile(r"[A-Za-z_]\w*$")
+_OPENS = (re.compile(r"\.$|#.*[\"</]$"), re.compile(r"[\"'./=\[{]$"))
+"""What opens the list before a name is begun, in a kernel and in TOML."""
 _CHOOSE = (imgui.Key.up_arrow, imgui.Key.down_arrow, imgui.Key.enter, imgui.Key.keypad_enter, imgui.Key.tab)
 
 
@@ -626,18 +700,24 @@ def _complete(editing: Editing, view: _View, files: OpenFiles) -> None:
     before = editor.get_line_text(at.line)[: at.index]
     word = _PREFIX.search(before)
     prefix = word[0] if word else ""
-    behind_dot = before[: len(before) - len(prefix)].endswith(".")
-    is_shorter, shown.prefix = len(prefix) < len(shown.prefix), prefix
-    if not (len(prefix) > 1 or behind_dot) or (is_shorter and shown.is_closed):
+    opens = _OPENS[editing.text.path.suffix == ".toml"].search(before) is not None
+    is_shorter = at.line == shown.end.line and at.index < shown.end.index
+    shown.end = at
+    if not (len(prefix) > 1 or opens) or (is_shorter and shown.is_closed):
         shown.close()
         return
-    start = len(before) - len(prefix)
-    text = view.written()
-    offset = sum(len(line) + 1 for line in text.split("\n")[: at.line]) + start + len(prefix)
-    names = files.suggest(editing.text.path, text, offset)
-    lower = prefix.lower()
-    fitting = [s for s in names if s.label.lower().startswith(lower) and s.label != prefix and s.start < 0]
-    fitting.sort(key=lambda s: (not s.label.startswith(prefix), s.order, s.label.lower()))
+    offset = view.offset(at)
+    names = files.names.suggest(editing.text.path, view.written(), offset)
+    start = next((s.start for s in names if s.start >= 0), offset - len(prefix))
+    shown.prefix = before[len(before) - (offset - start) :] if offset > start else ""
+    lower = shown.prefix.lower()
+
+    def fits(s: Suggestion) -> bool:
+        at = s.label.lower().find(lower)  # of a path or a value any part
+        return s.label != shown.prefix and (at == 0 or (at > 0 and s.start >= 0))
+
+    fitting = [s for s in names if fits(s)]
+    fitting.sort(key=lambda s: (not s.label.startswith(shown.prefix), s.order, s.label.lower()))
     shown.found, shown.at, shown.is_closed = fitting[:_MOST], 0, not fitting
 
 
@@ -665,8 +745,12 @@ def _accept(view: _View, suggestion: Suggestion) -> None:
     editor, shown = view.editor, view.completion
     at = editor.get_main_cursor_position()
     start = _Pos(at.line, at.index - len(shown.prefix))
-    before = editor.get_undo_index()
-    editor.replace_section_text(start, at, suggestion.label)
+    before, label = editor.get_undo_index(), suggestion.label
+    line = editor.get_line_text(at.line)
+    quote = line[start.index - 1 : start.index]
+    if quote in ('"', "'") and suggestion.start >= 0 and line[at.index : at.index + 1] != quote:
+        label += quote
+    editor.replace_section_text(start, at, label)
     from playground.sketch.suggestions import include_row
 
     row = include_row(view.written())
@@ -675,7 +759,7 @@ def _accept(view: _View, suggestion: Suggestion) -> None:
         include = f'#include "{suggestion.include}"\n'
         editor.replace_section_text(_Pos(row, 0), _Pos(row, 0), include)
         lines = int(row <= at.line)
-    editor.set_cursor(_Pos(at.line + lines, start.index + len(suggestion.label)))
+    editor.set_cursor(_Pos(at.line + lines, start.index + len(label)))
     view.note_step(before)
     view.waits, view.typed_at = True, imgui.get_time()
     shown.close()
@@ -714,11 +798,15 @@ def _draw_completion(view: _View, look: Theme) -> None:
 
 def _about(suggestion: Suggestion) -> str:
     """Return what is known of a name, on one line."""
+    from playground.sketch.model import Parameter
+
     about, origin = suggestion.about, suggestion.origin
     if isinstance(origin, tuple):
         about = origin[1].comment
-    elif origin is not None:
+    elif isinstance(origin, Parameter):
         about = origin.tooltip
+    elif origin is not None:
+        about = shown(origin.path)
     return " ".join(about.split())
 
 
@@ -732,19 +820,109 @@ def _explain(editing: Editing, view: _View, files: OpenFiles, look: Theme) -> No
         return
     if not editor.is_mouse_pos_over_glyph(mouse):
         return
-    word = editor.get_word_at_mouse_pos(mouse)
-    if not _PREFIX.fullmatch(word or ""):
-        return
-    at = editor.get_doc_pos_at_mouse_pos(mouse)
-    known = files.meaning(editing.text.path, view.written(), at.line, at.index, word)
+    known = files.names.meaning(
+        editing.text.path, view.written(), view.offset(editor.get_doc_pos_at_mouse_pos(mouse))
+    )
     if known is not None:
         with look.font(look.code, theme.SMALL):
             text = "\n".join(filter(None, [known.detail, textwrap.fill(_about(known), 60)]))
-            imgui.set_tooltip(f"{word}: {text}" if known.kind != "function" else text)
+            imgui.set_tooltip(f"{known.label}: {text}" if known.kind != "function" else text)
 
 
 def _cut(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[: most - 1]}…"
+
+
+# ── names ────────────────────────────────────────────────────────────────────
+
+
+def _draw_menu(editing: Editing, view: _View, files: OpenFiles, at: text_edit.TextEditor.DocPos) -> None:
+    """Draw what a right click offers at a place of the text."""
+    editor, is_free = view.editor, not editing.belongs_to
+    if imgui.menu_item_simple(f"{tr('Rename')}###rename", "F2", False, is_free):
+        editor.set_cursor(at)
+        _begin_renaming(editing, view, files)
+    if imgui.menu_item_simple(f"{tr('Go to the declaration')}###declaration", "F12"):
+        editor.set_cursor(at)
+        _open_declaration(editing, view, files)
+    imgui.separator()
+    has_selection = editor.any_cursor_has_selection()
+    if imgui.menu_item_simple(f"{tr('Cut')}###cut", "Ctrl+X", False, is_free and has_selection):
+        editor.cut()
+    if imgui.menu_item_simple(f"{tr('Copy')}###copy", "Ctrl+C", False, has_selection):
+        editor.copy()
+    if imgui.menu_item_simple(f"{tr('Paste')}###paste", "Ctrl+V", False, is_free):
+        editor.paste()
+
+
+def _open_declaration(editing: Editing, view: _View, files: OpenFiles) -> None:
+    at = view.offset(view.editor.get_main_cursor_position())
+    files.open_declaration(editing.text.path, view.written(), at)
+
+
+def _begin_renaming(editing: Editing, view: _View, files: OpenFiles) -> None:
+    """Open the field for a new name at the name that the cursor is in, or say why it has to stay."""
+    if editing.belongs_to:
+        note = tr("{file} is not the sketch's own, so its names stay", file=editing.text.path.name)
+        files.notices.say(note)
+        return
+    text, at = view.written(), view.offset(view.editor.get_main_cursor_position())
+    try:
+        start, end = files.names.rename_span(editing.text.path, text, at)
+    except PlaygroundError as error:
+        files.notices.say(str(error))
+        return
+    view.completion.close()
+    view.renaming = _Renaming(start, text[start:end])
+
+
+def _draw_renaming(editing: Editing, view: _View, files: OpenFiles, look: Theme) -> None:
+    """Draw the field for a new name, and below it why the last one was refused."""
+    asked, editor = view.renaming, view.editor
+    if asked is None:
+        return
+    if not asked.is_open:
+        asked.is_open = True
+        imgui.open_popup("rename")
+    place = editor.doc_pos2_screen_pos(_place_of(view.written(), asked.at))
+    imgui.set_next_window_pos(ImVec2(place.x, place.y + editor.get_line_height() + 2))
+    if not imgui.begin_popup("rename"):
+        view.renaming = None
+        editor.set_focus()
+        return
+    if imgui.is_window_appearing():
+        imgui.set_keyboard_focus_here()
+    flags = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all
+    with look.font(look.code):
+        imgui.set_next_item_width(240 * look.scale)
+        entered, asked.new = imgui.input_text("##new name", asked.new, flags)
+    if entered:
+        asked.message = _rename(editing, view, files, asked)
+        imgui.set_keyboard_focus_here(-1)
+    if (entered and not asked.message) or imgui.is_key_pressed(imgui.Key.escape, False):
+        imgui.close_current_popup()
+    with look.font(look.text, theme.SMALL):
+        if asked.message:
+            with inked(theme.palette.alarm):
+                imgui.text_unformatted(textwrap.fill(asked.message, 48))
+        else:
+            imgui.text_disabled(tr("Enter renames it wherever it is seen"))
+    imgui.end_popup()
+
+
+def _rename(editing: Editing, view: _View, files: OpenFiles, asked: _Renaming) -> str:
+    """Give a name its new one in every file, as one step; return why not, or nothing."""
+    path, sketch = editing.text.path, files.sketch
+    folder = Path(sketch.folder) if sketch is not None else path.parent
+    try:
+        edits = files.names.rename(path, view.written(), asked.at, asked.new.strip(), folder)
+        changes = {_view_of(files.tab_of(file)): some for file, some in edits.items()}
+    except PlaygroundError as error:
+        return error.diagnostics[0].message
+    step = {each: each.apply(some) for each, some in changes.items()}
+    for each in step:
+        each.shared.append(step)
+    return ""
 
 
 # ── questions ────────────────────────────────────────────────────────────────
