@@ -314,17 +314,16 @@ def moved(sketch: Sketch, name: str, by: int) -> PassEdit:
     return _edit(sketch, tuple(passes), {}, change)
 
 
-def save_passes(file: Sketch, edit: PassEdit) -> tuple[str, str]:
-    """Write an edit into the file that ``file`` was loaded from; return the text before it and after.
+def save_passes(file: Sketch, edit: PassEdit) -> None:
+    """Write an edit into the file that ``file`` was loaded from.
 
     Raises as ``save`` does, and what is wrong with the text that the edit would leave.
     """
-    texts = ["", ""]
 
     def change(text: str) -> str:
-        texts[0], texts[1] = text, edit.change(text)
-        load_with(Techniques(), Path(file.file), normalised(texts[1]))
-        return texts[1]
+        new = edit.change(text)
+        load_with(Techniques(), Path(file.file), normalised(new))
+        return new
 
     names = [spec.name for spec in edit.passes]
 
@@ -335,7 +334,6 @@ def save_passes(file: Sketch, edit: PassEdit) -> tuple[str, str]:
         return _joined(reloaded.graph) == _joined(expected)
 
     write_over(Path(file.file), file, change, is_right)
-    return texts[0], texts[1]
 
 
 def _joined(graph: Graph) -> set[tuple[str, str, str, str]]:

@@ -16,11 +16,11 @@ from playground.sketch.pasted import keep_text
 from playground.sketch.save import save, save_copy, save_preset, saved_text
 from playground.studio.channels.channels import source_of
 from playground.studio.edits.edits import Draft
-from playground.studio.edits.history import FILES, History, Key
+from playground.studio.edits.history import History, Key
 from playground.studio.edits.undo import Undo
 from playground.studio.language import counted, tr
 from playground.studio.notices import Notices
-from playground.studio.save.sketch_file import FileTexts, SketchFile, contents_of, save_presets
+from playground.studio.save.sketch_file import SketchFile, save_presets
 from playground.studio.save.sketch_of_shader import is_shader, save_as_sketch
 from playground.studio.session import Session
 
@@ -286,22 +286,7 @@ class Actions:
 
     def _write_step(self, draft: Draft, act: Callable[[], None], name: str) -> bool:
         """Write into the sketch's file, as one step of the history; return whether that worked."""
-        path = Path(draft.file.file)
-        self.undo.record()
-        was: bytes | None = None
-
-        def write() -> None:
-            nonlocal was
-            was = contents_of(path)
-            act()
-
-        if not self.file.write(write):
-            return False
-        texts = FileTexts(((path, contents_of(path)),), ((path, was),))
-        before, after = {(FILES, ""): texts.back}, {(FILES, ""): texts}
-        self.undo.history.record(before, after, name, now=self.notices.now())
-        self.undo.settle()
-        return True
+        return self.undo.write(name, act, Path(draft.file.file))
 
     def copy_toml(self, copy: Callable[[str], None]) -> None:
         """Copy the sketch's text as it would be saved; ``copy`` puts a text on the clipboard."""

@@ -61,8 +61,8 @@ class Workbench:
         self.file = SketchFile(session, self.notices)
         self.undo = Undo(session, self.notices, self.painting, self.file)
         self.actions = Actions(session, self.notices, self.undo, self.file, folder)
-        self.keyframes = KeyframeEdits(session, self.notices, self.undo, self.file)
-        self.passes = PassEdits(session, self.notices, self.undo, self.file)
+        self.keyframes = KeyframeEdits(session, self.notices, self.undo)
+        self.passes = PassEdits(session, self.notices, self.undo)
         self.file.save_typed = self._save_typed_sketch
         self.interface = Interface(preferences=preferences or Preferences())
         self.start = StartPage(self.actions, more=self._cards)

@@ -74,8 +74,9 @@ def file(tmp_path: Path) -> Path:
 def edited(path: Path, edit: PassEdit) -> Sketch:
     """Write an edit, and load the result."""
     sketch = load(path)
-    before, after = save_passes(sketch, edit)
-    assert before != after and path.read_text(encoding="utf-8") == after
+    before = path.read_bytes()
+    save_passes(sketch, edit)
+    assert path.read_bytes() != before
     return load(path)
 
 
@@ -295,11 +296,11 @@ def test_shipped_sketches_stand_any_edits(path: Path, tmp_path: Path) -> None:
         )
         text = copy.read_text(encoding="utf-8")
         try:
-            before, after = save_passes(sketch, random_source.choice(kinds)(sketch, name))
+            save_passes(sketch, random_source.choice(kinds)(sketch, name))
         except PlaygroundError as error:
             assert copy.read_text(encoding="utf-8") == text and "\n" not in str(error).strip()
             assert "cannot be written into this file" not in str(error)
             continue
         done += 1
-        assert before == text and copy.read_text(encoding="utf-8") == after
+        assert copy.read_text(encoding="utf-8") != text
         load(copy)

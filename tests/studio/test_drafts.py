@@ -500,15 +500,16 @@ def test_a_keyframe_that_cannot_be_written_is_still_to_be_undone(harness: Harnes
     assert harness.bench.keyframes.keyframes and harness.bench.undo.history.done == 2
     file = harness.folder / "one/sketch.toml"
     before = file.read_text(encoding="utf-8")
-    harness.write("one/sketch.toml", before.replace("size = 9", "size = 17"))
+    clash = before.replace("[[keyframe]]", "[[keyframe]]  # mine")
+    harness.write("one/sketch.toml", clash)
     harness.bench.undo.undo()
     harness.frame()
     assert "changed meanwhile" in harness.messages and "[[keyframe]]" in file.read_text(encoding="utf-8")
     assert harness.bench.undo.history.done == 2, "it is not undone"
-    harness.write("one/sketch.toml", before)
+    harness.write("one/sketch.toml", before.replace("size = 9", "size = 17"))
     harness.bench.undo.undo()
     harness.answer(GOOD)
-    assert harness.bench.keyframes.keyframes == () and harness.level == 0.5
+    assert harness.bench.keyframes.keyframes == () and harness.level == 0.5 and harness.size == 17
     assert harness.bench.undo.history.done == 1
 
 

@@ -292,7 +292,7 @@ def test_an_undo_leaves_what_was_edited_elsewhere(passes_bare: Bare) -> None:
     settle(bare)
     bare.bench.undo.undo()
     settle(bare)
-    assert text_of(bare) == clash and any("edited" in note.text for note in bare.bench.notices.items)
+    assert text_of(bare) == clash and any("changed" in note.text for note in bare.bench.notices.items)
 
 
 def test_values_that_are_not_saved_outlive_an_edit_of_the_passes(passes_bare: Bare) -> None:

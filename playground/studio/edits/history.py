@@ -26,13 +26,11 @@ MOMENT = 0.7
 MAX_ENTRIES = 200
 """Steps that are stored; the oldest go first."""
 
-KEYFRAMES = "keyframes"
-FILES = "files"
 TEXT = "text"
 
 Key = tuple[str, str]
 """What can change: ("value", path), ("technique", pass), ("channel", path), ("lock", path), ("step", path),
-("camera", ""), ("keyframes", ""), ("files", ""), ("text", "") or ("time", "")."""
+("camera", ""), ("text", path of a file) or ("time", "")."""
 CHECKED = ("technique", "channel")
 """The kinds that are shown only once they have proved good."""
 State = Mapping[Key, object]
@@ -41,10 +39,10 @@ State = Mapping[Key, object]
 
 @dataclass(frozen=True)
 class TextChange:
-    """A change of the sketch's text, as a step has it for one way."""
+    """What a step makes of a file, for one way; None: there is no such file."""
 
-    of: str
-    to: str
+    of: bytes | None
+    to: bytes | None
 
 
 @dataclass(frozen=True)
@@ -170,16 +168,22 @@ class History:
     def go(self, by: int, apply: Callable[[State], bool]) -> bool:
         """Undo (-1) or redo (1) a step: ``apply`` sets what it changed, None for what the file says.
 
-        Where there is none, or ``apply`` returns False, nothing is done, and False is returned.
+        A text comes as a ``TextChange``. Where there is no step, or ``apply`` returns False, nothing is
+        done, and False is returned.
         """
         if not (self.can_redo if by > 0 else self.can_undo):
             return False
         step = self.steps[self.done if by > 0 else self.done - 1]
-        values = step.after if by > 0 else step.before
-        if not apply(values):
+        values, others = (step.after, step.before) if by > 0 else (step.before, step.after)
+        texts = {
+            key: TextChange(cast("bytes | None", others[key]), cast("bytes | None", value))
+            for key, value in values.items()
+            if key[0] == TEXT
+        }
+        if not apply({**values, **texts}):
             return False
         self.done, self._open = self.done + by, False
-        left_out = (KEYFRAMES, FILES, TEXT, "time")
+        left_out = (TEXT, "time")
         self._due |= {key: value for key, value in values.items() if key[0] not in left_out}
         return True
 

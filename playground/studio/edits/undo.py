@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.studio.clock import stepped, toggle_loop
-from playground.studio.edits.history import FILES, KEYFRAMES, TEXT, History, State, TextChange, steps_of
+from playground.studio.edits.edits import Edits
+from playground.studio.edits.history import TEXT, History, Key, State, TextChange, changes_between, steps_of
 from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.paint.painting import Painting
 from playground.studio.reload.stages import ReloadStage
-from playground.studio.save.sketch_file import FileTexts, SketchFile
+from playground.studio.save.sketch_file import SketchFile, contents_of
 from playground.studio.session import Session
 
 
@@ -68,6 +69,31 @@ class Undo:
         finally:
             self.record()
             self.history.call("")
+
+    def write(self, name: str, act: Callable[[], None], path: Path, edits: Edits | None = None) -> bool:
+        """Write a file by ``act`` and replace the edits, as one step; return whether that worked.
+
+        Where it is refused, a notice says why, or a copy is offered.
+        """
+        key: Key = (TEXT, str(path))
+        draft, before, after = self.session.shown, dict[Key, object](), dict[Key, object]()
+
+        def write() -> None:
+            before[key] = contents_of(path)
+            act()
+            after[key] = contents_of(path)
+
+        self.record()
+        if draft is None or not self.file.write(write):
+            return False
+        if edits is not None and edits != draft.edits:
+            old, new = changes_between(draft.edits, edits)
+            before, after = before | old, after | new
+            self.session.drafts.restore_with_save(edits)
+        if before != after:
+            self.history.record(before, after, name, now=self.notices.now())
+        self.settle()
+        return True
 
     def undo(self) -> None:
         """Undo the last step; while painting, the last stroke."""
@@ -126,17 +152,9 @@ class Undo:
 
     def _apply(self, changes: State) -> bool:
         """Set what a step changed; return False, with a notice, where that is refused."""
-        session = self.session
-        keyframes, time = changes.get((KEYFRAMES, "")), changes.get(("time", ""))
-        text = changes.get((TEXT, ""))
-        if session.shown is None:
-            return False
-        if isinstance(keyframes, tuple) and not self.file.write_keyframes(keyframes):
-            return False
-        texts = changes.get((FILES, ""))
-        if isinstance(texts, FileTexts) and not self.file.write_texts(texts):
-            return False
-        if isinstance(text, TextChange) and not self.file.change_text(text):
+        session, time = self.session, changes.get(("time", ""))
+        texts = {Path(path): c for (_, path), c in changes.items() if isinstance(c, TextChange)}
+        if session.shown is None or (texts and not self.file.change_texts(texts)):
             return False
         if not session.drafts.apply(changes):
             return False

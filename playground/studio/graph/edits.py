@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Container, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 
 from playground.errors import PlaygroundError
 from playground.sketch import edit_passes
@@ -15,19 +16,17 @@ from playground.sketch.model import PassSpec, Sketch, Technique
 from playground.sketch.replace_technique import own_names, reader_of
 from playground.sketch.wiring import input_names, output_names
 from playground.studio.edits.edits import Draft
-from playground.studio.edits.history import TEXT, TextChange
 from playground.studio.edits.undo import Undo
 from playground.studio.language import tr
 from playground.studio.notices import Notices
-from playground.studio.save.sketch_file import SketchFile
 from playground.studio.session import Session
 
 
 class PassEdits:
     """Edits the passes of one session's sketch."""
 
-    def __init__(self, session: Session, notices: Notices, undo: Undo, file: SketchFile) -> None:
-        self.session, self.notices, self.undo, self.file = session, notices, undo, file
+    def __init__(self, session: Session, notices: Notices, undo: Undo) -> None:
+        self.session, self.notices, self.undo = session, notices, undo
 
     @property
     def draft(self) -> Draft | None:
@@ -67,23 +66,16 @@ class PassEdits:
 
     def _write(self, label: str, make: Callable[[Sketch], PassEdit]) -> str:
         """Write an edit as one step; return the name of its new pass, or "-" for an edit without one."""
-        draft, done = self.draft, list[tuple[PassEdit, str, str]]()
+        draft, done = self.draft, list[PassEdit]()
         if draft is None:
             return ""
 
         def act() -> None:
-            edit = make(draft.file)
-            done.append((edit, *save_passes(draft.file, edit)))
+            done.append(make(draft.file))
+            save_passes(draft.file, done[0])
 
-        self.undo.record()
-        if not self.file.write(act) or not done:
-            return ""
-        edit, before, after = done[0]
-        if before != after:
-            old, new = {(TEXT, ""): TextChange(after, before)}, {(TEXT, ""): TextChange(before, after)}
-            self.undo.history.record(old, new, label, now=self.notices.now())
-            self.undo.settle()
-        return edit.name or "-"
+        written = self.undo.write(label, act, Path(draft.file.file))
+        return done[0].name or "-" if written else ""
 
     # ── neither is written ───────────────────────────────────────────────────
 

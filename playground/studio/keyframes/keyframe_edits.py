@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
 
 from playground.errors import ParameterError
 from playground.sketch.assign import TERRAIN_KEYS, resolve, value_of, values_of
@@ -16,11 +17,10 @@ from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch
 from playground.studio.actions import rounded
 from playground.studio.edits.edits import Edits, leaves
-from playground.studio.edits.history import KEYFRAMES, Key, changes_between
 from playground.studio.edits.undo import Undo
 from playground.studio.language import tr, tr_label
 from playground.studio.notices import Notices
-from playground.studio.save.sketch_file import SketchFile
+from playground.studio.save.sketch_file import save_keyframes
 from playground.studio.session import Session
 
 STEP = 0.01
@@ -34,7 +34,6 @@ class KeyframeEdits:
     session: Session
     notices: Notices
     undo: Undo
-    file: SketchFile
 
     @property
     def keyframes(self) -> tuple[Keyframe, ...]:
@@ -113,22 +112,11 @@ class KeyframeEdits:
 
     def _write(self, keyframes: Sequence[Keyframe], name: str, edits: Edits | None = None) -> bool:
         """Write keyframes into the file and replace the edits, as one step."""
-        drafts, draft = self.session.drafts, self.session.shown
+        draft = self.session.shown
         if draft is None:
             return False
-        self.undo.record()
-        existing = draft.file.keyframes
-        if not self.file.write_keyframes(keyframes):
-            return False
-        before: dict[Key, object] = {(KEYFRAMES, ""): existing}
-        after: dict[Key, object] = {(KEYFRAMES, ""): tuple(sorted(keyframes, key=lambda k: k.time))}
-        if edits is not None and edits != draft.edits:
-            old, new = changes_between(draft.edits, edits)
-            before, after = before | old, after | new
-            drafts.restore_with_save(edits)
-        self.undo.history.record(before, after, name, now=self.notices.now())
-        self.undo.settle()
-        return True
+        file = draft.file
+        return self.undo.write(name, lambda: save_keyframes(file, keyframes), Path(file.file), edits)
 
     def _camera(self, file: Sketch, now: Sketch) -> dict[str, float | tuple[float, ...]]:
         """Return the camera as a keyframe says it; in metres, unless the others show the whole terrain."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from difflib import SequenceMatcher
@@ -22,7 +22,6 @@ from playground.files import partial_file, read_regular, reason, writing
 from playground.paths import GLSL, shown
 from playground.shader.parameter import shortest
 from playground.sketch.keyframes import EASES
-from playground.sketch.load import load
 from playground.sketch.model import Camera, Keyframe, Sketch, Value
 from playground.sketch.save import (
     ReadOnlySketch,
@@ -184,19 +183,6 @@ def _new_block(file: Sketch, keyframe: Keyframe, newline: str) -> str:
     return _changed(f"[[keyframe]]{newline}", file, ("keyframe", 0), empty, keyframe)
 
 
-@dataclass(frozen=True)
-class FileTexts:
-    """What files are to hold, and what they hold until then; None: there is no such file."""
-
-    becomes: tuple[tuple[Path, bytes | None], ...]
-    was: tuple[tuple[Path, bytes | None], ...]
-
-    @property
-    def back(self) -> FileTexts:
-        """The other way round."""
-        return FileTexts(self.was, self.becomes)
-
-
 def contents_of(path: Path) -> bytes | None:
     """Return what a file holds, None where there is none; raise ``DataError`` where it cannot be read."""
     try:
@@ -207,30 +193,31 @@ def contents_of(path: Path) -> bytes | None:
         raise DataError(f"cannot be read: {reason(error)}", file=path) from None
 
 
-def write_texts(texts: FileTexts) -> None:
-    """Write all files, or none of them.
+def write_texts(changes: Mapping[Path, TextChange]) -> None:
+    """Change all files, or none of them; a text keeps what else was edited in it since.
 
     Raises ``ReadOnlySketch`` for one that cannot be written or belongs to the playground itself,
-    ``SketchError`` where one holds something else than ``was``, ``DataError`` where the system refuses.
+    ``SketchError`` where the same lines have changed since, ``DataError`` where the system refuses.
     """
-    for path, before in texts.was:
+    before: dict[Path, bytes | None] = {}
+    after: dict[Path, bytes | None] = {}
+    for path, change in changes.items():
         file = path.resolve()
         if file.is_relative_to(GLSL.resolve()):
             raise ReadOnlySketch("this sketch belongs to the playground itself", file=path)
         if not os.access(file if file.exists() else file.parent, os.W_OK):
             raise ReadOnlySketch("this sketch cannot be written to", file=path)
-        if contents_of(file) != before:
-            raise SketchError(f"{path.name} has changed meanwhile, so nothing is written", file=shown(path))
+        before[path] = contents_of(file)
+        after[path] = merged(path, before[path], change)
     written: list[Path] = []
     try:
-        for path, data in texts.becomes:
+        for path, data in after.items():
             written.append(path)
             _replace(path, data)
     except PlaygroundError:
-        before_all = dict(texts.was)
         for path in written:
             with suppress(PlaygroundError):
-                _replace(path, before_all[path])
+                _replace(path, before[path])
         raise
 
 
@@ -286,45 +273,29 @@ class SketchFile:
             return True
         return False
 
-    def change_text(self, change: TextChange) -> bool:
-        """Change the text, also where the file has changed elsewhere since; return whether that worked."""
-        draft = self.session.shown
-        if draft is None:
-            return False
-        path = Path(draft.file.file)
-
-        def changed(text: str) -> str:
-            new = merged(text, change)
-            if new is None:
-                raise SketchError(
-                    "the same lines were edited since, so they stay as they are", file=shown(path)
-                )
-            return new
-
-        return self.write(lambda: write_over(path, load(path), changed, lambda _: True))
-
-    def write_keyframes(self, keyframes: Sequence[Keyframe]) -> bool:
-        """Write keyframes into the file; return whether that worked."""
-        draft = self.session.shown
-        return draft is not None and self.write(lambda: save_keyframes(draft.file, keyframes))
-
-    def write_texts(self, texts: FileTexts) -> bool:
-        """Write several files, or none; return whether that worked."""
-        return self.write(lambda: write_texts(texts))
+    def change_texts(self, changes: Mapping[Path, TextChange]) -> bool:
+        """Change several files, or none; return whether that worked."""
+        return self.write(lambda: write_texts(changes))
 
 
-def merged(text: str, change: TextChange) -> str | None:
-    """Return a text with a change made to it; None where the same lines differ from what that is of."""
-    if text == change.of:
+def merged(path: Path, data: bytes | None, change: TextChange) -> bytes | None:
+    """Return what a file becomes by a change made to what it holds by now, ``data``.
+
+    Raises ``SketchError`` where the same lines differ from what the change is of.
+    """
+    if data == change.of:
         return change.to
+    words = "the same lines have changed meanwhile, so they stay as they are"
+    if data is None or change.of is None or change.to is None:
+        raise SketchError(words, file=shown(path))
     old = change.of.splitlines(keepends=True)
-    edits: list[tuple[int, int, list[str]]] = []
-    for new in (change.to.splitlines(keepends=True), text.splitlines(keepends=True)):
+    edits: list[tuple[int, int, list[bytes]]] = []
+    for new in (change.to.splitlines(keepends=True), data.splitlines(keepends=True)):
         codes = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
         edits += [(i, j, new[a:b]) for kind, i, j, a, b in codes if kind != "equal"]
     edits.sort(key=lambda edit: edit[:2])
     if any(later[0] < earlier[1] or later[:1] == earlier[:1] for earlier, later in pairwise(edits)):
-        return None
+        raise SketchError(words, file=shown(path))
     for start, end, lines in reversed(edits):
         old[start:end] = lines
-    return "".join(old)
+    return b"".join(old)

@@ -27,10 +27,10 @@ from playground.sketch.techniques import Techniques
 from playground.studio.actions import Actions
 from playground.studio.compare.compare import Compare
 from playground.studio.edits.edits import Draft, file_values, first_draft, reload_draft
-from playground.studio.edits.history import FILES, Key, state_of
+from playground.studio.edits.history import TEXT, Key, state_of
 from playground.studio.language import tr
 from playground.studio.reload.stages import ReloadStage
-from playground.studio.save.sketch_file import FileTexts, contents_of
+from playground.studio.save.sketch_file import contents_of
 from playground.studio.versions.store import State, Version, VersionStore, hash_of_text, key_of
 
 _LOOKS = 0.05  # [s] between questions to the sandbox about a version
@@ -349,13 +349,10 @@ class Versions:
             after: dict[Key, object] = dict(state_of(version.state.edits, dict(version.state.steps)))
             keys = {*before, *after}
             before, after = {k: before.get(k) for k in keys}, {k: after.get(k) for k in keys}
-            if changed:
-                texts = FileTexts(
-                    tuple((self._path(name), wanted[name]) for name in changed),
-                    tuple((self._path(name), now.get(name)) for name in changed),
-                )
-                before[FILES, ""], after[FILES, ""] = texts.back, texts
-            elif before == after:
+            for name in changed:
+                key = TEXT, str(self._path(name))
+                before[key], after[key] = now.get(name), wanted[name]
+            if before == after:
                 if not typed:
                     self._say(tr("this version is what is shown"))
                 return bool(typed)
