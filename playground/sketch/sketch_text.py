@@ -65,8 +65,8 @@ def cursor_at(text: str, at: int) -> Cursor:
     word = rest.rpartition('"')[2] if quoted else re.split(r"[\s,\[{=]", rest)[-1]
     keys = tuple(part for key in keys for part in key.split("."))
     if not is_value and not quoted:  # set.octaves
-        *around, word = word.split(".")
-        keys += tuple(around)
+        *before_dot, word = word.split(".")
+        keys += tuple(before_dot)
     return Cursor(table, keys, is_value, False, word, at - len(word), quoted)
 
 

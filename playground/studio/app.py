@@ -386,8 +386,8 @@ class Live:
             return QUIET / 2
         if self.bench.notices.items or self.start_panel.waits:
             return 0.1
-        if self.bench.files.draws_in is not None:
-            return self.bench.files.draws_in
+        if self.bench.files.pane.draws_in is not None:
+            return self.bench.files.pane.draws_in
         if self.readout.waits:
             return 0.25
         if imgui.get_io().want_text_input:

@@ -99,7 +99,7 @@ class Workbench:
         if not drafts.opening and (drafts.shown is not None or drafts.error is not None):
             self.files.follow(drafts.path, drafts.shown.file if drafts.shown is not None else None)
         self.panes.has_code = bool(self.files.editing)
-        self.problems.is_quiet = self.files.keys.held
+        self.problems.is_quiet = self.files.pane.has_keys
 
     def _save_typed_sketch(self) -> None:
         """Save what is typed in the sketch's own file: values, keyframes and passes are written into that."""

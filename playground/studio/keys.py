@@ -19,7 +19,7 @@ from playground.sketch.traits import traits_of
 from playground.studio import theme
 from playground.studio.addition import Layer
 from playground.studio.bench import Workbench
-from playground.studio.code.panel import close_completion, give_back_keys, stay, typing
+from playground.studio.code.panel import close_smaller, give_back_keys, stay, typing
 from playground.studio.draw import (
     QUIET,
     ctrl_held,
@@ -263,7 +263,7 @@ def act_on_keys(bench: Workbench) -> None:
         bench.window.quit()
         return
     if imgui.is_key_pressed(imgui.Key.escape, repeat=False):
-        if not left_a_field() and not close_completion(bench.files):
+        if not left_a_field() and not close_smaller(bench.files):
             close_one(bench)
         return
     if typing(bench.files) and ctrl and imgui.is_key_pressed(imgui.Key.e, repeat=False):

@@ -284,6 +284,34 @@ def test_a_sketch_is_completed_and_explained(pane: Pane, folder: Path) -> None:
     assert site is not None and site.path.parent.name == "generation"
 
 
+# ── find and replace ──────────────────────────────────────────────────────────
+
+
+def test_a_text_is_found_and_replaced_one_by_one_or_at_once(pane: Pane) -> None:
+    pane.place(1, 1)
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.f)
+    pane.run_frames(2)
+    pane.type("LEVEL")
+    pane.key(imgui.Key.enter)
+    selection = pane.editor().get_main_cursor_selection()
+    assert (selection.start.line, selection.start.index) == (2, 14)
+    pane.click("##replace")
+    pane.type("rise")
+    pane.click("Replace##replace one")
+    assert pane.editor().get_text() == TERRAIN.replace("level", "rise", 1)
+    assert pane.editor().get_main_cursor_selection().start.line == 4, "on to the next one"
+    pane.click("All##replace all")
+    pane.run_frames(WAITS)
+    assert pane.editor().get_text() == TERRAIN.replace("level", "rise") and pane.height() == 0.5
+    pane.click("##replace")
+    pane.key(imgui.Key.escape)
+    pane.run_frames(3)
+    assert not pane.bench.files.pane.find.is_open and typing(pane.bench.files)
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    pane.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    assert pane.editor().get_text() == TERRAIN
+
+
 # ── new names ─────────────────────────────────────────────────────────────────
 
 

@@ -211,11 +211,31 @@ MAX_TABS = 8
 
 
 @dataclass
-class PaneKeys:
-    """Whether the code pane has the keys."""
+class Find:
+    """What is looked for in the text that is seen, and what takes its place."""
 
-    held: bool = False
+    is_open: bool = False
+    asks: str = ""  # which of its fields is to get the keys
+    settles: int = 0  # frames that this still takes
+    text: str = ""
+    new: str = ""
+    case: bool = False  # letters count as they are written
+    words: bool = False  # whole words alone
+
+    def focus(self, field: str) -> None:
+        """Give a field the keys."""
+        self.asks, self.settles = field, 3
+
+
+@dataclass
+class PaneState:
+    """What the code pane and the window tell each other."""
+
+    has_keys: bool = False
     asked_at: int = -100  # the frame in which it was asked to take them
+    jumps: bool = False  # the current file is to be seen
+    draws_in: float | None = None  # [s] until what is typed is drawn; None: it is
+    find: Find = field(default_factory=Find)
 
 
 @dataclass
@@ -232,9 +252,7 @@ class OpenFiles:
     show: Callable[[], None] = lambda: None  # opens the code pane
     copy_in: Callable[[Path], None] = lambda path: None  # makes a file of the library the sketch's own
     names: Names = field(init=False)
-    draws_in: float | None = None  # [s] until what is typed is drawn; None: it is
-    jumps: bool = False  # the pane is to show ``current``
-    keys: PaneKeys = field(default_factory=PaneKeys)
+    pane: PaneState = field(default_factory=PaneState)
     sketch: Sketch | None = None  # that is shown
     _followed: tuple[Path | None, bool] = (None, False)
 
@@ -299,7 +317,7 @@ class OpenFiles:
         if self.current is None or all(e is not self.current for e in self.editing):
             self.current = next((e for e in self.editing if e.text.path.suffix != ".toml"), None)
             self.current = self.current or next(iter(self.editing), None)
-            self.jumps = self.current is not None
+            self.pane.jumps = self.current is not None
 
     def own(self) -> list[Path]:
         """Return the sketch's own files."""

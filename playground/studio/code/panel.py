@@ -13,6 +13,7 @@ from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,8 +24,18 @@ from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import shown, without_part
 from playground.shader.syntax.tokens import without_comments
 from playground.studio import theme
-from playground.studio.code.open_files import Editing, OpenFiles, library_files
-from playground.studio.draw import QUIET, Area, button, buttons, ctrl_held, inked, styled, window
+from playground.studio.code.open_files import Editing, Find, OpenFiles, library_files
+from playground.studio.draw import (
+    QUIET,
+    Area,
+    button,
+    buttons,
+    ctrl_held,
+    inked,
+    left_a_field,
+    styled,
+    window,
+)
 from playground.studio.language import tr
 from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named
@@ -200,7 +211,7 @@ class _View:
         for view, (_, after) in step.items():
             if view.editor.get_undo_index() == after:
                 view._undo()
-                view._note_moved(self)
+                view._note_moved()
 
     def redo(self) -> None:
         """Do again what ``undo`` took back last."""
@@ -209,13 +220,13 @@ class _View:
         for view, (before, _) in step.items():
             if view.editor.get_undo_index() == before:
                 view._redo()
-                view._note_moved(self)
+                view._note_moved()
 
-    def _note_moved(self, by: _View) -> None:
-        """Have the text drawn that an undo in another file has changed."""
-        if by is not self:
-            self.index = self.editor.get_undo_index()
-            self.waits, self.typed_at = True, imgui.get_time()
+    def _note_moved(self) -> None:
+        """Take in an undo or a redo, which completes nothing."""
+        self.index = self.editor.get_undo_index()
+        self.waits, self.typed_at = True, imgui.get_time()
+        self.completion.close()
 
     def _undo(self) -> None:
         at = bisect_left(self.steps, self.editor.get_undo_index())
@@ -285,6 +296,7 @@ def _view_of(editing: Editing) -> _View:
         editor.set_show_whitespaces_enabled(False)
         editor.set_complete_paired_glyphs(False)  # it would add a second one to each that is typed
         editor.set_show_matching_brackets(True)
+        editor.set_find_replace_enabled(False)  # its box is cut off in a narrow pane, and text shines through
         editor.set_text(editing.text.base)
         editor.set_insert_spaces_on_tabs(step != "\t")
         view = editing.view = _View(editor, step, editor.get_undo_index(), editor.get_undo_index())
@@ -334,7 +346,7 @@ def draw_code(files: OpenFiles, problems: Problems, look: Theme, tracing: Tracin
             view.waits = False
             files.draw_typed(editing)
     left = [PATIENCE - imgui.get_time() + view.typed_at for e in waiting if (view := _view_of(e)).waits]
-    files.draws_in = max(min(left), 0.0) if left else None
+    files.pane.draws_in = max(min(left), 0.0) if left else None
 
 
 _JUST = 4  # frames that a click or a request takes to give the pane the keys
@@ -345,12 +357,12 @@ def _take_or_leave_keys(files: OpenFiles) -> None:
     now, all_of_it = imgui.get_frame_count(), imgui.HoveredFlags_.root_and_child_windows
     hovered = imgui.is_window_hovered(all_of_it | imgui.HoveredFlags_.allow_when_blocked_by_active_item)
     if any(editing.focus for editing in files.editing) or (imgui.is_mouse_clicked(0) and hovered):
-        files.keys.asked_at = now
-    is_new = now - files.keys.asked_at <= _JUST
+        files.pane.asked_at = now
+    is_new = now - files.pane.asked_at <= _JUST
     if not imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
-        files.keys.held = files.keys.held and is_new
-    elif files.keys.held or is_new:
-        files.keys.held = True
+        files.pane.has_keys = files.pane.has_keys and is_new
+    elif files.pane.has_keys or is_new:
+        files.pane.has_keys = True
         files.names.prepare()
     else:
         imgui.set_window_focus(None)
@@ -379,18 +391,22 @@ def stay(files: OpenFiles) -> None:
             editing.view.closing = False
 
 
-def close_completion(files: OpenFiles) -> bool:
-    """Close the list of what may stand at the cursor; return whether it was open."""
+def close_smaller(files: OpenFiles) -> bool:
+    """Close the list of what may stand at the cursor, or what finds; return whether one was open."""
     views = [e.view for e in files.editing if isinstance(e.view, _View) and e.view.completion.found]
     for view in views:
         view.completion.close()
-    return bool(views)
+    if views:
+        return True
+    was_open = files.pane.find.is_open and files.pane.has_keys
+    files.pane.find.is_open = files.pane.find.is_open and not was_open
+    return was_open
 
 
 def give_back_keys(files: OpenFiles) -> None:
     """Give the keys back to the picture."""
     imgui.set_window_focus(None)
-    files.keys.held, files.keys.asked_at = False, -_JUST - 1
+    files.pane.has_keys, files.pane.asked_at = False, -_JUST - 1
     for editing in files.editing:
         if isinstance(editing.view, _View):
             editing.view.focused_for = 0
@@ -401,9 +417,9 @@ def _draw_tab(editing: Editing, files: OpenFiles) -> bool:
     view, flags = _view_of(editing), 0
     if view.changed and editing.text.needs_saving:
         flags |= imgui.TabItemFlags_.unsaved_document
-    if editing.focus or (files.current is editing and files.jumps):
+    if editing.focus or (files.current is editing and files.pane.jumps):
         flags |= imgui.TabItemFlags_.set_selected
-        files.jumps = False
+        files.pane.jumps = False
     label = editing.text.path.name if editing.text.needs_saving else editing.text.title
     name = f"{label}###{editing.text.title} {'' if editing.text.needs_saving else 'copy'}"
     is_seen, stays = imgui.begin_tab_item(name, True, flags)
@@ -432,10 +448,6 @@ def _draw_text(
     editing: Editing, files: OpenFiles, problems: Problems, look: Theme, tracing: Tracing | None
 ) -> None:
     view = _view_of(editing)
-    view.editor.set_find_button_label(tr("Next"))
-    view.editor.set_find_all_button_label(tr("All"))
-    view.editor.set_replace_button_label(tr("Replace"))
-    view.editor.set_replace_all_button_label(f"{tr('All')}##replace")
     if view.is_light is not theme.palette.is_light:
         view.is_light = theme.palette.is_light
         of = text_edit.TextEditor
@@ -444,6 +456,8 @@ def _draw_text(
     view.focused_for = view.focused_for + 1 if focused and not editing.focus else 0
     _mark(editing, view, problems)
     _draw_bar(editing, view, files, look)
+    if files.pane.find.is_open:
+        _draw_find(editing, view, files.pane.find, look)
     if focused and view.renaming is None:
         _take_keys(editing, view, files)
         _choose_completion(view)
@@ -453,11 +467,15 @@ def _draw_text(
         view.editor.set_cursor(_Pos(editing.line - 1, editing.column - 1))
         view.editor.scroll_to_line(editing.line - 1, text_edit.TextEditor.Scroll.align_middle)
         view.editor.set_focus()
-    elif focused and imgui.is_window_focused() and not imgui.is_any_item_active():
+    find = files.pane.find
+    in_field = imgui.is_any_item_active() or find.settles > 0
+    find.settles = max(find.settles - 1, 0)
+    if focused and imgui.is_window_focused() and not in_field:
         view.editor.set_focus()  # after a click on a tab or a button
-    if focused and not imgui.is_any_item_active():  # Enter in the search field finds
+    if focused and not in_field:  # Enter in a field finds
         _indent(view)
-    view.editor.set_text_context_menu_callback(lambda asked: _draw_menu(editing, view, files, asked.pos))
+    menu = partial(_draw_menu, editing, view, files, look)
+    view.editor.set_text_context_menu_callback(lambda asked: menu(asked.pos))
     below = imgui.get_text_line_height_with_spacing() if view.marked[1] else 0.0
     with look.font(look.code), styled({imgui.Col_.child_bg: theme.colour(theme.palette.ground)}):
         mouse = imgui.get_mouse_pos()
@@ -482,10 +500,15 @@ def _take_keys(editing: Editing, view: _View, files: OpenFiles) -> None:
     if ctrl_held():
         if imgui.is_key_pressed(imgui.Key.s, False):
             files.save(editing)
+        if imgui.is_key_pressed(imgui.Key.f, False):
+            _open_find(view, files)
+        in_field = imgui.is_any_item_active()
         for key, act in ((imgui.Key.z, view.undo), (imgui.Key.y, view.redo)):
-            if imgui.is_key_pressed(key):
+            if imgui.is_key_pressed(key) and not in_field:
                 imgui.internal.set_key_owner(key, _OWNER, imgui.internal.InputFlagsPrivate_.lock_this_frame)
                 (view.redo if imgui.get_io().key_shift else act)()
+    if imgui.is_key_pressed(imgui.Key.f3) and files.pane.find.text:
+        _find_next(view, files.pane.find)
     if imgui.is_key_pressed(imgui.Key.f12, False):
         _open_declaration(editing, view, files)
     if imgui.is_key_pressed(imgui.Key.f2, False):
@@ -552,7 +575,7 @@ def _draw_bar(editing: Editing, view: _View, files: OpenFiles, look: Theme) -> N
         (f"{tr('Save')}###save code", note, lambda: files.save(editing), view.changed),
         (f"{tr('Undo')}###undo code", "Ctrl+Z", view.undo, view.editor.can_undo()),
         (f"{tr('Redo')}###redo code", "Ctrl+Y", view.redo, view.editor.can_redo()),
-        (f"{tr('Find')}###find code", "Ctrl+F", view.editor.open_find_replace_window, True),
+        (f"{tr('Find')}###find code", "Ctrl+F", partial(_open_find, view, files), True),
         small=True,
     )
     imgui.same_line()
@@ -681,6 +704,92 @@ def _draw_mistake(view: _View, look: Theme) -> None:
             view.editor.set_focus()
     if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
         imgui.set_tooltip(textwrap.fill(diagnostic.message, 70))
+
+
+# ── find and replace ──────────────────────────────────────────────────────────
+
+
+def _open_find(view: _View, files: OpenFiles) -> None:
+    """Open what finds, with the selected text in its field where that is of one line."""
+    find, editor = files.pane.find, view.editor
+    find.is_open = True
+    find.focus("##find")
+    selection = editor.get_main_cursor_selection()
+    if selection.start != selection.end and selection.start.line == selection.end.line:
+        find.text = editor.get_section_text(selection.start, selection.end)
+
+
+def _find_next(view: _View, find: Find) -> None:
+    view.editor.select_next_occurrence_of(find.text, find.case, find.words)
+
+
+def _draw_find(editing: Editing, view: _View, find: Find, look: Theme) -> None:
+    """Draw the fields and buttons that find, and replace in a text that can be changed."""
+    pattern = re.escape(find.text)
+    pattern = rf"\b{pattern}\b" if find.words else pattern
+    count = len(re.findall(pattern, view.written(), 0 if find.case else re.IGNORECASE)) if find.text else 0
+    room = imgui.get_content_region_avail().x
+    field_wide, closer = 0.38 * room, {imgui.StyleVar_.item_spacing: ImVec2(4 * look.scale, 4 * look.scale)}
+    with look.font(look.text, theme.SMALL), styled(sizes=closer):
+        entered, find.text = _draw_field(find, "##find", tr("Find"), find.text, field_wide)
+        imgui.same_line()
+        if button(f"{tr('Next')}##find next", "F3", enabled=count > 0) or (entered and count):
+            _find_next(view, find)
+        imgui.same_line()
+        _, find.case = imgui.checkbox("Aa", find.case)
+        imgui.set_item_tooltip(tr("Letters count as they are written"))
+        imgui.same_line()
+        _, find.words = imgui.checkbox("[ ]", find.words)
+        imgui.set_item_tooltip(tr("Whole words alone"))
+        imgui.same_line()
+        imgui.text_disabled(str(count))
+        imgui.set_item_tooltip(tr("{count} found", count=count))
+        imgui.same_line()
+        if button("×##close find", tr("Esc closes it")) or (
+            left_a_field() and imgui.is_key_pressed(imgui.Key.escape, False)
+        ):
+            find.is_open = False
+        if editing.belongs_to:
+            return
+        entered, find.new = _draw_field(find, "##replace", tr("Replace by"), find.new, field_wide)
+        imgui.same_line()
+        if button(f"{tr('Replace')}##replace one", enabled=count > 0) or (entered and count):
+            _replace(view, find)
+        imgui.same_line()
+        if button(f"{tr('All')}##replace all", tr("As one step"), enabled=count > 0):
+            _replace(view, find, all_of_them=True)
+
+
+def _draw_field(find: Find, label: str, hint: str, text: str, wide: float) -> tuple[bool, str]:
+    """Draw a field that keeps the keys at Enter; return whether that was pressed, and its text."""
+    if find.asks == label:
+        find.asks = ""
+        imgui.set_keyboard_focus_here()
+    imgui.set_next_item_width(wide)
+    flags = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all
+    entered, text = imgui.input_text_with_hint(label, hint, text, flags)
+    if entered:
+        find.focus(label)
+    return entered, text
+
+
+def _replace(view: _View, find: Find, *, all_of_them: bool = False) -> None:
+    """Replace what is selected, where that is what is looked for, and go on; or all of it."""
+    editor, before = view.editor, view.editor.get_undo_index()
+    selection = editor.get_main_cursor_selection()
+    found = editor.get_section_text(selection.start, selection.end)
+    if all_of_them:
+        editor.select_all_occurrences_of(find.text, find.case, find.words)
+        editor.replace_text_in_all_cursors(find.new)
+        editor.set_cursor(editor.get_main_cursor_position())
+    elif found == find.text or (not find.case and found.lower() == find.text.lower()):
+        editor.replace_text_in_current_cursor(find.new)
+    if editor.get_undo_index() != before:
+        view.note_step(before)
+        view.waits, view.typed_at = True, imgui.get_time()
+        view.marked = (None, view.marked[1])
+    if not all_of_them:
+        _find_next(view, find)
 
 
 # ── completion ───────────────────────────────────────────────────────────────
@@ -836,13 +945,23 @@ def _cut(text: str, most: int) -> str:
 # ── names ────────────────────────────────────────────────────────────────────
 
 
-def _draw_menu(editing: Editing, view: _View, files: OpenFiles, at: text_edit.TextEditor.DocPos) -> None:
+def _draw_menu(
+    editing: Editing, view: _View, files: OpenFiles, look: Theme, at: text_edit.TextEditor.DocPos
+) -> None:
     """Draw what a right click offers at a place of the text."""
+    spacing = {imgui.StyleVar_.item_spacing: ImVec2(16 * look.scale, 6 * look.scale)}
+    with styled(sizes=spacing), look.font(look.text):
+        _draw_menu_items(editing, view, files, at)
+
+
+def _draw_menu_items(
+    editing: Editing, view: _View, files: OpenFiles, at: text_edit.TextEditor.DocPos
+) -> None:
     editor, is_free = view.editor, not editing.belongs_to
     if imgui.menu_item_simple(f"{tr('Rename')}###rename", "F2", False, is_free):
         editor.set_cursor(at)
         _begin_renaming(editing, view, files)
-    if imgui.menu_item_simple(f"{tr('Go to the declaration')}###declaration", "F12"):
+    if imgui.menu_item_simple(f"{tr('Go to the declaration')}    ###declaration", "F12"):
         editor.set_cursor(at)
         _open_declaration(editing, view, files)
     imgui.separator()
