@@ -113,12 +113,7 @@ def passed_on(graph: Graph, name: str, output: str) -> Wire | None:
     mine = [wire for wire in wires_of(graph) if wire.reader == name and wire.giver != name]
     own = components_of(spec.technique)
     output = output if output in own else next(iter(own))
-
-    def numbers(wire: Wire) -> int:
-        giver = graph.find(wire.giver)
-        return components_of(giver.technique).get(wire.output, 0) if giver is not None else 0
-
-    fitting = [wire for wire in mine if numbers(wire) == own[output]]
+    fitting = [wire for wire in mine if _numbers(graph, wire) == own[output]]
     return next((wire for wire in fitting if wire.input == output), next(iter(fitting), None))
 
 
@@ -152,18 +147,28 @@ class PassEdit:
     name: str = ""  # of the pass that is new
 
 
-def added(sketch: Sketch, use: str, after: str = "", output: str = "", *, between: bool = True) -> PassEdit:
+def added(
+    sketch: Sketch,
+    use: str,
+    after: str = "",
+    output: str = "",
+    *,
+    between: bool = True,
+    on: tuple[str, str] | None = None,
+) -> PassEdit:
     """Return the edit that adds a pass behind another, wired to it; before the view without one.
 
     ``output``: of the pass before, which the new one reads; the one that suits it best where none is
     named. ``between``: those that read an output of a name that the new pass has as well read that of
-    the new pass.
+    the new pass. ``on``: the wire to an input, reader and name, that the new pass goes on; no other changes.
     Raises ``SketchError`` for a technique that is wrong or cannot be wired, and where there is no such pass.
     """
     folder, passes = Path(sketch.folder), sketch.graph.passes
     technique = Techniques().read(use, folder, folder)
     name = _free_name(use, passes)
-    after = "" if after == "view" else after  # nothing comes behind the picture
+    wire = _wire(sketch, *on) if on is not None else None
+    after = wire.giver if wire is not None else "" if after == "view" else after  # nothing is behind the view
+    output = wire.output if wire is not None else output
     giver = _pass(sketch, after) if after else None
     at = _place(passes, after) + 1 if after else len(passes) - 1
     spec = PassSpec(name, use, technique, file=shown(sketch.file))
@@ -171,9 +176,13 @@ def added(sketch: Sketch, use: str, after: str = "", output: str = "", *, betwee
     if giver is not None:
         spec = replace(spec, inputs=_first_wires(spec, giver, output, passes[:at]))
         outputs = output_names(technique)
-        for wire in wires_of(sketch.graph) if between and spec.inputs else ():
-            if wire.giver == after and wire.output in outputs:
-                changed[wire.reader, wire.input] = source_text(spec, wire.output, wire.input)
+        if wire is not None:
+            if not spec.inputs:
+                raise SketchError(_takes_none(name), file=shown(sketch.file))
+            changed[wire.reader, wire.input] = _given_to(sketch, spec, wire)
+        for other in wires_of(sketch.graph) if between and spec.inputs and wire is None else ():
+            if other.giver == after and other.output in outputs:
+                changed[other.reader, other.input] = source_text(spec, other.output, other.input)
     structure = (*passes[:at], spec, *passes[at:])
     lines = ["[[pass]]", f"name = {text_of(name)}", f"use  = {text_of(use)}"]
     if spec.inputs:
@@ -221,6 +230,94 @@ def wired(sketch: Sketch, giver: str, output: str, reader: str, name: str) -> Pa
         message = f"'{giver}' is made from '{reader}' already: passes that read each other would never end"
         raise SketchError(message, file=shown(sketch.file))
     return _edit(sketch, sketch.graph.passes, {(reader, name): source_text(source, output, name)})
+
+
+def put_on_wire(sketch: Sketch, name: str, reader: str, input_name: str) -> PassEdit:
+    """Return the edit that puts a pass on the wire to an input: between what feeds it and its reader.
+
+    Those that read it where it was read what it was made of, as where it is deleted. It stays in its place
+    in the file.
+    Raises ``SketchError`` where no input of it fits what the wire carries, no output its reader, where that
+    closes a circle, and where there is no such wire.
+    """
+    spec, wire, graph = _pass(sketch, name), _wire(sketch, reader, input_name), sketch.graph
+    if name in (wire.giver, reader):
+        raise SketchError(f"the wire is one of '{name}' itself", file=shown(sketch.file))
+    into, out = _fitting_input(graph, spec, wire), _given_to(sketch, spec, wire)
+    changed: dict[tuple[str, str], str] = {}
+    for other in wires_of(graph):
+        instead = passed_on(graph, name, other.output) if other.giver == name else None
+        if instead is not None:
+            changed[other.reader, other.input] = instead.source
+    giver = _pass(sketch, wire.giver)
+    changed[name, into] = source_text(giver, wire.output, into) if wire.output else wire.source
+    changed[reader, input_name] = out
+    after = replace(graph, passes=_rewired(graph.passes, changed))
+    for other in wires_of(after):
+        if other.reader == name and other.giver != name and closes_circle(after, other.giver, name):
+            message = (
+                f"'{other.giver}' is made from '{name}' then: passes that read each other would never end"
+            )
+            raise SketchError(message, file=shown(sketch.file))
+    return _edit(sketch, graph.passes, changed)
+
+
+def _wire(sketch: Sketch, reader: str, name: str) -> Wire:
+    found = next((w for w in wires_of(sketch.graph) if (w.reader, w.input) == (reader, name)), None)
+    if found is None:
+        raise SketchError(f"nothing feeds '{name}' of pass '{reader}'", file=shown(sketch.file))
+    return found
+
+
+def _takes_none(name: str) -> str:
+    return f"'{name}' takes no input, so it cannot be on a wire"
+
+
+def _numbers(graph: Graph, wire: Wire) -> int:
+    """Return how many numbers a texel has of what a wire carries; 0 where that is not known."""
+    giver = graph.find(wire.giver)
+    return components_of(giver.technique).get(wire.output, 0) if giver is not None else 0
+
+
+def _fitting_input(graph: Graph, spec: PassSpec, wire: Wire) -> str:
+    """Return the input of a pass that takes what a wire carries; raise ``SketchError`` where none does.
+
+    It is that of the output's name, else the first whose texels have as many numbers, else one that is free.
+    """
+    names, numbers = input_names(spec.technique), _numbers(graph, wire)
+    if not names:
+        raise SketchError(_takes_none(spec.name))
+    fed = {mine.input: _numbers(graph, mine) for mine in wires_of(graph) if mine.reader == spec.name}
+    like = [name for name in names if name in fed and 0 in (numbers, fed[name], numbers - fed[name])]
+    carried = wire.output or wire.input
+    found = [carried] * (carried in names) + like + [name for name in names if name not in fed]
+    if not found:
+        raise SketchError(f"no input of '{spec.name}' takes '{carried}'")
+    return found[0]
+
+
+def output_for(outputs: Mapping[str, int], carried: str, numbers: int) -> str:
+    """Return the output that takes the place of what a wire carries; "" where there is none.
+
+    ``outputs``: how many numbers a texel of each has. It is that of its name, else the first that has as
+    many; 0 where that is not known.
+    """
+    like = (name for name, count in outputs.items() if 0 in (numbers, numbers - count))
+    return carried if carried in outputs else next(like, "")
+
+
+def carried_by(graph: Graph, wire: Wire) -> tuple[str, int]:
+    """Return the name of what a wire carries, and how many numbers a texel of it has; 0: not known."""
+    return wire.output or wire.input, _numbers(graph, wire)
+
+
+def _given_to(sketch: Sketch, spec: PassSpec, wire: Wire) -> str:
+    """Return what the reader of a wire reads once a pass is on it, as a file names it."""
+    carried, numbers = carried_by(sketch.graph, wire)
+    output = output_for(components_of(spec.technique), carried, numbers)
+    if not output or spec.name == "view":
+        raise SketchError(f"'{spec.name}' gives nothing that '{wire.reader}' reads in place of '{carried}'")
+    return source_text(spec, output, wire.input)
 
 
 def closes_circle(graph: Graph, giver: str, reader: str) -> bool:

@@ -19,6 +19,7 @@ from playground.sketch.edit_passes import (
     duplicated,
     moved,
     passed_on,
+    put_on_wire,
     save_passes,
     unwired,
     wired,
@@ -123,6 +124,91 @@ def test_a_pass_of_another_output_takes_no_reader_away(file: Path) -> None:
     sketch = edited(file, added(load(file), "lighting/horizons", "height"))
     assert ("height", "horizons") in joined(sketch) and ("height", "light") in joined(sketch)
     assert not any(giver == "horizons" for giver, _ in joined(sketch))
+
+
+def test_a_new_pass_goes_on_one_wire_alone(file: Path) -> None:
+    sketch = edited(file, added(load(file), "erosion/thermal", on=("light", "height")))
+    assert ("height", "thermal") in joined(sketch) and ("thermal", "light") in joined(sketch)
+    assert {("height", "colour"), ("height", "view")} <= joined(sketch)
+    assert ("height", "light") not in joined(sketch) and ("thermal", "view") not in joined(sketch)
+    for use, words in (("generation/fbm", "no input"), ("lighting/l_dot_n", "gives nothing")):
+        with pytest.raises(SketchError, match=words):
+            added(load(file), use, on=("colour", "height"))
+    with pytest.raises(SketchError, match="nothing feeds 'mask'"):
+        added(load(file), "erosion/thermal", on=("light", "mask"))
+
+
+def test_a_pass_dropped_on_a_wire_goes_between(file: Path) -> None:
+    """It leaves the place where it was, as if deleted there; by text, all but the wires stays."""
+    edited(file, added(load(file), "erosion/thermal", "height"))
+    edited(file, added(load(file), "generation/smooth", "thermal"))
+    text = file.read_text(encoding="utf-8")
+    sketch = edited(file, put_on_wire(load(file), "smooth", "thermal", "height"))
+    assert {("height", "smooth"), ("smooth", "thermal"), ("thermal", "view")} <= joined(sketch)
+    assert not {("thermal", "smooth"), ("smooth", "view"), ("height", "thermal")} & joined(sketch)
+    kept = [line for line in file.read_text(encoding="utf-8").splitlines() if "inputs" not in line]
+    assert kept == [line for line in text.splitlines() if "inputs" not in line]
+    sketch = edited(file, put_on_wire(sketch, "smooth", "view", "height"))
+    assert {("height", "thermal"), ("thermal", "smooth"), ("smooth", "view")} <= joined(sketch)
+    assert ("thermal", "light") in joined(sketch), "the other readers stay where they are"
+
+
+def test_a_pass_that_does_not_fit_a_wire_is_refused(file: Path) -> None:
+    edited(file, added(load(file), "erosion/thermal", "height"))
+    sketch = load(file)
+    for name, reader, given, words in (
+        ("height", "light", "height", "takes no input"),
+        ("colour", "light", "height", "gives nothing that 'light' reads"),
+        ("view", "light", "height", "gives nothing|itself"),
+        ("thermal", "colour", "mask", "nothing feeds"),
+        ("thermal", "thermal", "height", "itself"),
+    ):
+        with pytest.raises(SketchError, match=words):
+            put_on_wire(sketch, name, reader, given)
+    edited(file, duplicated(sketch, "height"))
+    with pytest.raises(SketchError, match="takes no input"):
+        put_on_wire(load(file), "height_2", "light", "height")
+
+
+CIRCLE = """format = 1
+size = 9
+[[pass]]
+name = "rock"
+use = "generation/fbm"
+[[pass]]
+name = "sand"
+use = "generation/fbm"
+[[pass]]
+name = "smooth"
+use = "generation/smooth"
+inputs = { height = "rock" }
+[[pass]]
+name = "both"
+use = "./both"
+inputs = { height = "sand", other = "smooth" }
+[view]
+use = "./shown"
+inputs = { height = "both" }
+"""
+BOTH = """#pragma kernel(output = "height:r32f")
+uniform sampler2D height; //! input
+uniform sampler2D other; //! input
+float kernel(ivec2 texel) { return texelFetch(height, texel, 0).r + texelFetch(other, texel, 0).r; }
+"""
+
+
+def test_a_pass_that_would_be_made_of_itself_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "two.toml"
+    file.write_text(CIRCLE, encoding="utf-8")
+    (tmp_path / "both.glsl").write_text(BOTH, encoding="utf-8")
+    shown = BOTH.replace("uniform sampler2D other; //! input\n", "").replace(
+        " + texelFetch(other, texel, 0).r", ""
+    )
+    (tmp_path / "shown.glsl").write_text(shown, encoding="utf-8")
+    with pytest.raises(SketchError, match="never end"):
+        put_on_wire(load(file), "both", "smooth", "height")
+    sketch = edited(file, put_on_wire(load(file), "smooth", "both", "height"))
+    assert {("sand", "smooth"), ("smooth", "both"), ("rock", "both")} <= joined(sketch)
 
 
 def test_a_branch_leaves_the_readers(file: Path) -> None:
