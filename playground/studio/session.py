@@ -36,7 +36,7 @@ from playground.studio.land.exaggerated import exaggeration
 from playground.studio.language import tr
 from playground.studio.picture.gestures import turned_sun
 from playground.studio.picture.shown_picture import CatchUp, ShownPicture
-from playground.studio.picture.view import View, fitted, in_view, steps_of_repeats
+from playground.studio.picture.view import Place, View, fitted, in_view, steps_of_repeats
 from playground.studio.reload.dependencies import DataFiles
 from playground.studio.reload.stages import Checks, Reload, ReloadStage, Sandbox
 
@@ -365,10 +365,14 @@ class Session:
         return result.textures[source.output], (id(engine), result.number, engine.runs[source.path])
 
     def restore_view(
-        self, steps: Mapping[str, int], shown: Map | None, views: Mapping[int, Camera] | None = None
+        self,
+        steps: Mapping[str, int],
+        shown: Map | None,
+        views: Mapping[int, Camera] | None = None,
+        places: Mapping[str, Place] | None = None,
     ) -> None:
         """Stop repeats and show a map, as ``View.restore``; of a sketch being opened, once that is drawn."""
-        self.view.restore(steps, shown, views=views, later=self.drafts.opening)
+        self.view.restore(steps, shown, views=views, places=places, later=self.drafts.opening)
 
     def stop_at(self, path: str, step: int) -> None:
         """Show a repeated pass after so many steps; after its last, it runs to its end again."""

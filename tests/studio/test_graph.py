@@ -12,14 +12,22 @@ from imgui_bundle import imgui
 from playground.engine.textures import read_raw
 from playground.paths import SKETCHES
 from playground.studio.graph.edits import Catalogue
-from playground.studio.graph.graph import SIDE, THUMBNAIL_INTERVAL, Thumbnails, picture_of, wiring_of
+from playground.studio.graph.graph import (
+    MAX_PLACES,
+    SIDE,
+    THUMBNAIL_INTERVAL,
+    Pull,
+    Thumbnails,
+    picture_of,
+    wiring_of,
+)
 from playground.studio.graph.layout import LANE, Layout, layout_of, nearest_node
 from playground.studio.graph.panel import passes_tab
 
 from ..loading import load
 from ..sketch_texts import passes
 from .panel_desk import Bare, OpenBare
-from .session_desk import OpenSession
+from .session_desk import GOOD, Harness, OpenSession
 
 TERRAIN = """// terrain.glsl -- a slope from west to east
 #pragma kernel(output = "height:r32f")
@@ -93,7 +101,7 @@ def test_arrows_lead_to_the_nearest_node_of_a_side() -> None:
 
 
 def test_a_sketch_s_passes_and_their_wires() -> None:
-    outer = wiring_of(load(SKETCHES / "jacksboro.toml"), inner=False)
+    outer = wiring_of(load(SKETCHES / "jacksboro.toml"))
     assert list(outer.refs.items()) == [
         ("height", "height:height"),
         ("colour", "colour:colour"),
@@ -109,7 +117,7 @@ def test_a_sketch_s_passes_and_their_wires() -> None:
     }
     assert outer.inputs["colour"] == ("height",) and outer.outputs["view"] == ()
     assert outer.input_for("height", "height", "view") == "height"
-    inner = wiring_of(load(SKETCHES / "jacksboro.toml"), inner=True)
+    inner = wiring_of(load(SKETCHES / "jacksboro.toml"), "")
     assert ("view.sky", "view.land") in inner.edges and len(inner.refs) > 10
     assert all(path in ref for path, ref in inner.refs.items())
 
@@ -117,8 +125,8 @@ def test_a_sketch_s_passes_and_their_wires() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("path", sorted(SKETCHES.glob("*.toml")), ids=lambda path: path.stem)
 def test_every_sketch_that_ships_has_a_graph(path: Path) -> None:
-    for inner in (False, True):
-        wiring = wiring_of(load(path), inner=inner)
+    for inside in (None, ""):
+        wiring = wiring_of(load(path), inside)
         places = wiring.layout.places
         assert all(places[a][0] < places[b][0] for a, b in wiring.edges) and not overlaps(wiring.layout)
 
@@ -213,14 +221,12 @@ def test_g_opens_the_passes_and_closes_them(passes_bare: Bare) -> None:
     assert graph.thumbnails.get("height:height") is None  # all of them are given back
 
 
-def test_a_click_chooses_and_a_double_click_shows(passes_bare: Bare) -> None:
+def test_a_click_chooses_and_a_double_click_opens(passes_bare: Bare) -> None:
     bare, graph = passes_bare, passes_bare.bench.inspection.graph
     bare.click("node colour")
     assert graph.chosen == "colour" and bare.session.view.map is None
     bare.click("node colour", times=2)
-    assert bare.session.view.map is not None and bare.session.view.map.ref == "colour:colour"
-    bare.click("node view", times=2)
-    assert bare.session.view.map is None
+    assert bare.bench.files.editing[-1].text.path.name == "tint.glsl" and not graph.has_keys
     bare.click("node height")
     bare.click("S height")
     assert bare.session.view.map is not None and bare.session.view.map.ref == "height:height"
@@ -232,7 +238,7 @@ def test_all_is_done_by_keys_and_undone_byte_for_byte(passes_bare: Bare) -> None
     bare, graph, key = passes_bare, passes_bare.bench.inspection.graph, imgui.Key
     bare.key(key.right_arrow)
     assert graph.chosen == "height"
-    bare.key(key.d)
+    bare.key(key.mod_ctrl, key.d)
     settle(bare)
     assert graph.chosen == "height_2" and names_of(bare) == ["height", "height_2", "colour", "view"]
     texts = [SKETCH, text_of(bare)]
@@ -241,7 +247,7 @@ def test_all_is_done_by_keys_and_undone_byte_for_byte(passes_bare: Bare) -> None
     assert names_of(bare) == ["height", "colour", "height_2", "view"]
     texts.append(text_of(bare))
     bare.key(key.w)
-    assert graph.pulled == ("height_2", "height")
+    assert graph.pulled is not None and graph.pulled.giver == "height_2"
     while graph.chosen != "view":
         bare.key(key.right_arrow)
     bare.key(key.enter)
@@ -353,7 +359,7 @@ def test_a_wire_is_dragged_and_one_that_closes_a_circle_refused(
         imgui.get_io().add_mouse_pos_event(x + wide + 6, y + high / 2)
         bare.run_frames(2)
         bare.press(True)
-        assert bare.bench.inspection.graph.pulled == (giver, "height")
+        assert bare.bench.inspection.graph.pulled == Pull(giver, "height")
         x, y, wide, high = bare.places[f"node {reader}"]
         for share in (0.2, 0.5):
             imgui.get_io().add_mouse_pos_event(x + share * wide, y + high / 2)
@@ -379,10 +385,10 @@ def test_a_wire_let_go_in_the_empty_asks_what_to_add(passes_bare: Bare) -> None:
     imgui.get_io().add_mouse_pos_event(left + 20, top + 10)
     bare.run_frames(2)
     bare.press(False)
-    assert graph.chooser.on and (graph.chooser.after, graph.chooser.output) == ("colour", "colour")
+    assert graph.chooser.is_open and (graph.chooser.after, graph.chooser.output) == ("colour", "colour")
     bare.key(imgui.Key.escape)
     bare.key(imgui.Key.escape)
-    assert not graph.chooser.on and text_of(bare) == SKETCH
+    assert not graph.chooser.is_open and text_of(bare) == SKETCH
 
 
 def test_the_chooser_adds_what_is_searched_for_behind_a_node(passes_bare: Bare) -> None:
@@ -390,7 +396,7 @@ def test_the_chooser_adds_what_is_searched_for_behind_a_node(passes_bare: Bare) 
     bare.key(imgui.Key.right_arrow)
     imgui.get_io().add_input_character(ord("+"))
     bare.run_frames(4)
-    assert graph.chooser.on
+    assert graph.chooser.is_open
     bare.type("smoo")
     bare.run_frames(3)
     assert graph.chooser.search == "smoo"
@@ -478,3 +484,224 @@ def test_a_node_says_why_its_pass_ran_last(passes_bare: Bare, monkeypatch: pytes
         bare.point(f"node {node}", 0.3)
         bare.run_frames(60)
         assert tooltips[-1].endswith(f"\nLast ran: {why}")
+
+
+# ── nodes that are moved, wires that get a pass, all by keys ──────────────────
+
+
+def drag_node(bare: Bare, node: str, x: float, y: float, *, release: bool = True) -> None:
+    """Drag a node by its picture to a place in the window."""
+    bare.point(f"node {node}", 0.2)
+    bare.press(True)
+    start = imgui.get_mouse_pos()
+    for share in (0.3, 0.7, 1.0):
+        imgui.get_io().add_mouse_pos_event(start.x + share * (x - start.x), start.y + share * (y - start.y))
+        bare.run_frames()
+    if release:
+        bare.press(False)
+        settle(bare)
+
+
+def middle(bare: Bare, giver: str, reader: str) -> tuple[float, float]:
+    """Return the middle of a wire between pins in the middle of their nodes."""
+    bare.run_frames(2)
+    a, b = bare.places[f"node {giver}"], bare.places[f"node {reader}"]
+    return (a[0] + a[2] + b[0]) / 2, (a[1] + a[3] / 2 + b[1] + b[3] / 2) / 2
+
+
+CHAIN = (
+    "# A chain.\nformat = 1\nsize = [128, 32]\n\n"
+    '[[pass]]\nname = "height"\nuse  = "./terrain"  # the land\n\n'
+    '[[pass]]\nname   = "one"\nuse    = "generation/smooth"\ninputs = { height = "height" }\n\n'
+    '[[pass]]\nname   = "two"\nuse    = "generation/smooth"\ninputs = { height = "one" }\n\n'
+    '[[pass]]\nname = "aside"\nuse  = "generation/smooth"\ninputs = { height = "height" }\n\n'
+    '[[pass]]\nname = "colour"\nuse  = "./tint"\n\n'
+    '[view]\nuse    = "./both"\ninputs = { height = "two" }\n'
+)
+
+
+@pytest.fixture
+def chain(passes_bare: Bare) -> Bare:
+    """Give the tab of a chain of passes."""
+    passes_bare.session.path.write_text(CHAIN, encoding="utf-8")
+    passes_bare.session.drafts.reload()
+    passes_bare.run_frames(10)
+    return passes_bare
+
+
+def fed(bare: Bare) -> set[tuple[str, str]]:
+    sketch = bare.bench.inspection.graph.sketch
+    assert sketch is not None
+    return set(wiring_of(sketch).edges)
+
+
+def test_a_node_that_is_dragged_stays_there_alone(chain: Bare) -> None:
+    bare, graph = chain, chain.bench.inspection.graph
+    left, top, _, _ = bare.places["canvas"]
+    bare.run_frames(2)
+    before = dict(bare.places)
+    drag_node(bare, "aside", left + 150, top + 20)
+    assert list(bare.session.view.places) == ["aside"] and text_of(bare) == CHAIN
+    nodes = ("height", "one", "two", "colour", "view")
+    assert all(bare.places[f"node {node}"] == before[f"node {node}"] for node in nodes)
+    x, y, wide, _ = bare.places["node aside"]
+    assert abs(x + 0.2 * wide - left - 150) < 2 and y < top + 20
+    bare.bench.passes.delete("two")
+    settle(bare)
+    assert list(bare.session.view.places) == ["aside"], "an edit moves it nowhere"
+    bare.bench.passes.delete("aside")
+    settle(bare)
+    assert not bare.session.view.places
+    for number in range(MAX_PLACES + 3):
+        graph.place(f"n{number}", (0.0, 0.0))
+    assert len(bare.session.view.places) == MAX_PLACES and "n0" not in bare.session.view.places
+    graph.tidy()
+    assert not bare.session.view.places
+
+
+def test_a_node_dropped_on_a_wire_goes_between(chain: Bare) -> None:
+    bare = chain
+    drag_node(bare, "aside", *middle(bare, "one", "two"))
+    assert {("one", "aside"), ("aside", "two")} <= fed(bare) and ("one", "two") not in fed(bare)
+    assert "# A chain." in text_of(bare) and "# the land" in text_of(bare)
+    assert "aside" not in bare.session.view.places
+    bare.bench.undo.undo()
+    settle(bare)
+    assert text_of(bare) == CHAIN
+
+
+def test_a_node_that_does_not_fit_a_wire_is_red(chain: Bare, monkeypatch: pytest.MonkeyPatch) -> None:
+    bare, tooltips = chain, list[str]()
+    monkeypatch.setattr(imgui, "set_tooltip", tooltips.append)
+    drag_node(bare, "colour", *middle(bare, "one", "two"), release=False)
+    assert "no input" in tooltips[-1]
+    bare.press(False)
+    settle(bare)
+    assert text_of(bare) == CHAIN and not bare.session.view.places, "it goes back"
+    assert "no input" in bare.bench.notices.items[-1].text
+
+
+def test_a_plus_on_a_wire_offers_what_fits_there(chain: Bare) -> None:
+    bare, graph = chain, chain.bench.inspection.graph
+    imgui.get_io().add_mouse_pos_event(*middle(bare, "one", "two"))
+    bare.run_frames(3)
+    bare.press(True)
+    bare.press(False)
+    bare.run_frames(3)
+    assert graph.chooser.is_open and graph.chooser.on is not None and graph.chooser.on.reader == "two"
+    graph.chooser.catalogue.go_on("", 20.0)
+    entries = graph.entries(graph.wiring(bare.session.sketch))
+    assert len(entries) > 10 and all(
+        e.inputs and 1 in [*e.outputs.values(), *("height" in e.outputs,)] for e in entries
+    )
+    bare.type("thermal")
+    bare.run_frames(2)
+    bare.key(imgui.Key.enter)
+    settle(bare)
+    assert {("one", "thermal"), ("thermal", "two")} <= fed(bare) and ("one", "two") not in fed(bare)
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    settle(bare)
+    assert text_of(bare) == CHAIN
+
+
+def test_menus_of_a_wire_and_of_the_graph(chain: Bare) -> None:
+    bare, graph = chain, chain.bench.inspection.graph
+    x, y = middle(bare, "one", "two")
+    imgui.get_io().add_mouse_pos_event(x - 12, y)
+    bare.run_frames(2)
+    bare.press(True, 1)
+    bare.press(False, 1)
+    bare.run_frames(2)
+    bare.click("Disconnect###cut wire")
+    settle(bare)
+    assert ("one", "two") not in fed(bare)
+    bare.bench.undo.undo()
+    settle(bare)
+    assert text_of(bare) == CHAIN
+    graph.place("aside", (0.5, 3.0))
+    left, top, _, high = bare.places["canvas"]
+    imgui.get_io().add_mouse_pos_event(left + 4, top + high - 4)
+    bare.run_frames(2)
+    bare.press(True, 1)
+    bare.press(False, 1)
+    bare.run_frames(2)
+    bare.click("Tidy: place all nodes anew###tidy graph")
+    assert not bare.session.view.places
+
+
+def test_wires_and_places_by_keys(chain: Bare) -> None:
+    bare, graph, key = chain, chain.bench.inspection.graph, imgui.Key
+    graph.chosen = "two"
+    bare.key(key.mod_shift, key.left_arrow)
+    assert graph.wire == ("two", "height")
+    bare.key(key.insert)
+    bare.run_frames(2)
+    assert graph.chooser.is_open and graph.chooser.on is not None
+    bare.key(key.escape)  # leaves the field
+    bare.key(key.escape)
+    assert not graph.chooser.is_open and graph.has_keys
+    bare.key(key.delete)
+    settle(bare)
+    assert ("one", "two") not in fed(bare) and ("height", "two") in fed(bare), "found by its name again"
+    bare.key(key.mod_ctrl, key.z)
+    settle(bare)
+    assert text_of(bare) == CHAIN
+    graph.chosen, places = "two", graph.wiring(bare.session.sketch).layout.places
+    bare.key(key.mod_ctrl, key.mod_shift, key.down_arrow)
+    assert bare.session.view.places["two"][1] == pytest.approx(places["two"][1] + 0.5)
+    bare.key(key.t)
+    assert not bare.session.view.places and bare.bench.tracing.on is False
+    graph.chosen = "height"
+    seen = []
+    for _ in range(6):
+        bare.key(key.tab)
+        seen.append(graph.chosen)
+    assert sorted(seen) == sorted(graph.wiring(bare.session.sketch).refs) and bare.bench.interface.panel_shown
+    bare.key(key.mod_shift, key.tab)
+    assert graph.chosen == seen[-2]
+
+
+def test_arrows_follow_the_wires(chain: Bare) -> None:
+    bare, graph, key = chain, chain.bench.inspection.graph, imgui.Key
+    graph.chosen, seen = "two", []
+    for arrow in (key.left_arrow, key.left_arrow, key.right_arrow):
+        bare.key(arrow)
+        seen.append(graph.chosen)
+    assert seen[:2] == ["one", "height"] and seen[2] in ("one", "aside")
+    graph.place("one", (9.0, 0.0))
+    graph.chosen = "view"
+    bare.key(key.right_arrow)
+    assert graph.chosen == "one", "a node that was moved is reached where it is"
+
+
+def test_a_node_opens_and_esc_leads_out(passes_bare: Bare) -> None:
+    bare, graph, key = passes_bare, passes_bare.bench.inspection.graph, imgui.Key
+    bare.session.path.write_text(SKETCH.replace("./terrain", "generation/mixed").replace("[128, 32]", "33"), encoding="utf-8")
+    bare.session.drafts.reload()
+    bare.run_frames(10)
+    graph.chosen = "height"
+    bare.key(key.enter)
+    bare.run_frames(2)
+    inner = graph.wiring(bare.session.sketch).refs
+    assert graph.inside == "height" and len(inner) > 5 and all(node.startswith("height.") for node in inner)
+    bare.key(key.right_arrow)
+    bare.key(key.enter)
+    assert bare.bench.files.editing[-1].text.path.suffix in (".glsl", ".toml") and graph.inside == "height"
+    graph.has_keys = True
+    bare.key(key.escape)
+    assert graph.inside is None and graph.chosen == "height" and graph.has_keys
+    bare.key(key.escape)
+    assert not graph.has_keys
+
+
+def test_places_are_remembered_by_sketch(harness: Harness) -> None:
+    harness.session.view.places["height"] = (2.5, -1.0)
+    harness.frame()
+    harness.close()
+    harness.start("one")
+    harness.frame()
+    assert harness.session.view.places == {"height": (2.5, -1.0)}
+    harness.drops.take([harness.folder / "two" / "sketch.toml"])
+    harness.answer(GOOD)
+    harness.frame()
+    assert harness.name == "two" and not harness.session.view.places

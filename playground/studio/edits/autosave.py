@@ -168,6 +168,7 @@ class Autosave:
             dict(remembered.steps),
             Map(remembered.map, remembered.map_values) if remembered.map else None,
             dict(remembered.views),
+            dict(remembered.places),
         )
 
     def _drawn_of(self, draft: Draft) -> dict[str, Any]:
@@ -186,6 +187,7 @@ class Autosave:
             "map_values": shown.values if shown else (),
             "steps": tuple(sorted(view.steps.items())),
             "views": tuple(sorted(view.views.items())),
+            "places": tuple(sorted(view.places.items())),
         }
 
     def _snapshot(self, draft: Draft, window: tuple[int, int], at: tuple[int, int] | None) -> Remembered:

@@ -76,6 +76,7 @@ class Remembered:
     loop: tuple[float, float] | None = None  # [s] the times between which time goes round
     compared: Compared | None = None
     views: tuple[tuple[int, Camera], ...] = ()  # numbered ones that are kept
+    places: tuple[tuple[str, tuple[float, float]], ...] = ()  # of the graph's nodes that were moved
 
     @property
     def start(self) -> StoredEdits:

@@ -13,7 +13,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.sketch.edit_passes import Wire
 from playground.studio import theme
 from playground.studio.draw import fitting
-from playground.studio.graph.graph import Wiring
+from playground.studio.graph.graph import Pin, Wiring
 
 WIDE, HIGH = 172.0, 64.0
 """Of a node [units at zoom 1]."""
@@ -22,9 +22,6 @@ STEP = WIDE + 54.0
 MOST = 1.25
 """The zoom at which a graph that fits is drawn at most."""
 ZOOMS = (0.15, 3.0)
-
-Pin = tuple[str, str]
-"""A pass, and the name of an input or an output."""
 
 
 @dataclass
@@ -45,6 +42,11 @@ class Canvas:
     def place(self, x: float, y: float) -> ImVec2:
         """Return where a point of the graph is in the window."""
         return ImVec2(self.corner.x + self.pan[0] + x * self.k, self.corner.y + self.pan[1] + y * self.k)
+
+    def units(self, point: ImVec2) -> tuple[float, float]:
+        """Return where a point of the window is in the graph."""
+        x, y = point.x - self.corner.x - self.pan[0], point.y - self.corner.y - self.pan[1]
+        return x / self.k, y / self.k
 
     def holds(self, point: ImVec2) -> bool:
         """Return whether a point of the window is in the pane."""
@@ -111,6 +113,12 @@ def draw_wire(spans: tuple[list[Span], list[Span]], canvas: Canvas, ink: int, th
         draw.add_line(a, b, ink, thick)
 
 
+def middle_of(spans: tuple[list[Span], list[Span]]) -> ImVec2:
+    """Return the middle of a wire, where it is between two columns."""
+    a, b = spans[0][len(spans[0]) // 2]
+    return ImVec2((a.x + b.x) / 2, (a.y + b.y) / 2)
+
+
 def is_near(spans: tuple[list[Span], list[Span]], canvas: Canvas, mouse: ImVec2, reach: float) -> bool:
     """Return whether the mouse is on a wire, or so near to it."""
     for n, (a, b) in enumerate((*spans[0], *spans[1])):
@@ -154,7 +162,7 @@ def nearest_pin(pins: Mapping[Pin, ImVec2], mouse: ImVec2, reach: float) -> Pin 
 
 def node_at(wiring: Wiring, canvas: Canvas, mouse: ImVec2) -> str:
     """Return the node under the mouse; "" for none."""
-    for node in wiring.refs:
+    for node in reversed(list(wiring.refs)):  # the one on top first
         x, y = corner_of(wiring, node)
         low, far = canvas.place(x, y), canvas.place(x + WIDE, y + HIGH)
         if low.x <= mouse.x < far.x and low.y <= mouse.y < far.y:

@@ -25,7 +25,7 @@ def draw_chooser(bench: Workbench, wiring: Wiring, look: Theme) -> None:
     if chooser.opens:
         imgui.open_popup(_POPUP)
         await_field(bench.interface.ahead)
-    if not chooser.on:
+    if not chooser.is_open:
         return
     room, mouse, scale = imgui.get_main_viewport().size, imgui.get_mouse_pos(), look.scale
     wide, high = min(_WIDE * scale, room.x - 16), min(_HIGH * scale, room.y - 16)
@@ -34,7 +34,7 @@ def draw_chooser(bench: Workbench, wiring: Wiring, look: Theme) -> None:
     imgui.set_next_window_pos(ImVec2(x, y), imgui.Cond_.appearing)
     imgui.set_next_window_size(ImVec2(wide, high))
     if not imgui.begin_popup(_POPUP):
-        chooser.on = chooser.opens
+        chooser.is_open = chooser.opens
         chooser.opens = False
         return
     chooser.catalogue.go_on(chooser.search, _READING)
@@ -49,8 +49,9 @@ def draw_chooser(bench: Workbench, wiring: Wiring, look: Theme) -> None:
         chosen = entries[chooser.marked]
     if chosen is not None:
         imgui.close_current_popup()
-        chooser.on = False
-        name = bench.passes.add(chosen.use, chooser.after, chooser.output, between=not chooser.output)
+        chooser.is_open = False
+        on = (chooser.on.reader, chooser.on.input) if chooser.on is not None else None
+        name = bench.passes.add(chosen.use, chooser.after, chooser.output, between=not chooser.output, on=on)
         graph.chosen = name or graph.chosen
         graph.has_keys = True
     imgui.end_popup()
@@ -59,7 +60,10 @@ def draw_chooser(bench: Workbench, wiring: Wiring, look: Theme) -> None:
 def _search(bench: Workbench, graph: Graph) -> None:
     chooser = graph.chooser
     where = chooser.after + (f":{chooser.output}" if chooser.output else "")
-    imgui.text_disabled(tr("A pass behind {name}", name=where) if where else tr("A pass before the view"))
+    words = tr("A pass behind {name}", name=where) if where else tr("A pass before the view")
+    if chooser.on is not None:
+        words = tr("A pass between {giver} and {reader}", giver=chooser.on.giver, reader=chooser.on.reader)
+    imgui.text_disabled(words)
     if chooser.opens:
         imgui.set_keyboard_focus_here()
         chooser.opens = False

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from playground.errors import PlaygroundError
 from playground.sketch import edit_passes
-from playground.sketch.edit_passes import PassEdit, passed_on, save_passes
+from playground.sketch.edit_passes import PassEdit, components_of, passed_on, put_on_wire, save_passes
 from playground.sketch.find import is_part, shipped_names
-from playground.sketch.model import PassSpec, Sketch, Technique
+from playground.sketch.model import Kernel, PassSpec, Sketch, Technique
 from playground.sketch.replace_technique import own_names, reader_of
 from playground.sketch.wiring import input_names, output_names
 from playground.studio.edits.edits import Draft
@@ -27,6 +27,7 @@ class PassEdits:
 
     def __init__(self, session: Session, notices: Notices, undo: Undo) -> None:
         self.session, self.notices, self.undo = session, notices, undo
+        self._asked: tuple[object, object, str] = (None, (), "")  # of which file, about what; the answer
 
     @property
     def draft(self) -> Draft | None:
@@ -34,10 +35,43 @@ class PassEdits:
         drafts = self.session.drafts
         return drafts.shown if drafts.opening or drafts.coming is None else drafts.coming
 
-    def add(self, use: str, after: str = "", output: str = "", *, between: bool = True) -> str:
-        """Add a pass behind another, or before the view; return its name, "" where it cannot be."""
-        label = tr("Add {name}", name=use.rpartition("/")[2])
-        return self._write(label, lambda file: edit_passes.added(file, use, after, output, between=between))
+    def add(
+        self,
+        use: str,
+        after: str = "",
+        output: str = "",
+        *,
+        between: bool = True,
+        on: tuple[str, str] | None = None,
+    ) -> str:
+        """Add a pass behind another, on a wire, or before the view; return its name, "" where it cannot be.
+
+        ``on``: the reader and the input of that wire.
+        """
+
+        def add(file: Sketch) -> PassEdit:
+            return edit_passes.added(file, use, after, output, between=between, on=on)
+
+        return self._write(tr("Add {name}", name=use.rpartition("/")[2]), add)
+
+    def put(self, name: str, reader: str, input_name: str) -> bool:
+        """Put a pass on the wire to an input; return whether that worked."""
+        label = tr("Put {name} before {reader}", name=name, reader=reader)
+        return bool(self._write(label, lambda file: put_on_wire(file, name, reader, input_name)))
+
+    def why_not(self, name: str, reader: str, input_name: str) -> str:
+        """Return why a pass cannot be put on the wire to an input; "" where it can."""
+        draft = self.draft
+        if draft is None:
+            return ""
+        asked = name, reader, input_name
+        if self._asked[0] is not draft.file or self._asked[1] != asked:
+            self._asked = draft.file, asked, ""
+            try:
+                put_on_wire(draft.file, *asked)
+            except PlaygroundError as error:
+                self._asked = draft.file, asked, error.diagnostics[0].message
+        return self._asked[2]
 
     def wire(self, giver: str, output: str, reader: str, name: str) -> bool:
         """Feed an input of a pass from an output of another; return whether that worked."""
@@ -115,7 +149,7 @@ class Entry:
     use: str  # as a file names it
     title: str  # one sentence
     inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
+    outputs: Mapping[str, int]  # how many numbers a texel of each has
 
     @property
     def name(self) -> str:
@@ -157,7 +191,7 @@ class Catalogue:
             with suppress(PlaygroundError):
                 technique = self._read(use)
                 title = technique.title or use.rpartition("/")[2].replace("_", " ").capitalize()
-                self.entries[use] = Entry(use, title, input_names(technique), output_names(technique))
+                self.entries[use] = Entry(use, title, input_names(technique), components_of(technique))
             if time.perf_counter() > end:
                 break
 
@@ -196,3 +230,15 @@ def outputs_of(spec: PassSpec) -> tuple[str, ...]:
     """Return the outputs of a pass, its main one first."""
     names = output_names(spec.technique)
     return tuple(sorted(names, key=lambda name: name != spec.name))
+
+
+def technique_at(sketch: Sketch, path: str) -> Technique | None:
+    """Return the technique of a pass, by its path; of one inside a fast variant, the technique around it."""
+    found: Technique | None = None
+    for name in path.split("."):
+        around = sketch.graph if found is None else found
+        spec = None if isinstance(around, Kernel) else around.find(name)
+        if spec is None:
+            break
+        found = spec.technique
+    return found

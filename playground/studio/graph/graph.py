@@ -6,8 +6,8 @@ Thumbnails are drawn small by the graphics card, only when stale, one at a time.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Container, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +17,7 @@ from playground.engine.textures import make_texture
 from playground.paths import SKETCHES
 from playground.shader.colours import linear_to_srgb
 from playground.shader.own_shaders import own_shader
-from playground.sketch.edit_passes import Wire, closes_circle, wires_of
+from playground.sketch.edit_passes import Wire, carried_by, closes_circle, output_for, wires_of
 from playground.sketch.flat import Fed, Flat, Ref, leaves_of
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Sketch
@@ -26,11 +26,18 @@ from playground.studio.graph.edits import Catalogue, Entry, outputs_of
 from playground.studio.graph.layout import Edge, Layout, layout_of, nearest_node
 from playground.studio.language import counted
 from playground.studio.picture.full_screen import TexelShader
+from playground.studio.picture.view import Place
 from playground.studio.session import Session, Version
 from playground.studio.start.thumbnails import place_of, read_atlas, thumbnails
 
 if TYPE_CHECKING:
     import moderngl
+
+MAX_PLACES = 500
+"""Nodes whose places are remembered; those that were moved first are forgotten."""
+
+Pin = tuple[str, str]
+"""A pass, and the name of an input or an output."""
 
 
 @dataclass(frozen=True)
@@ -55,14 +62,21 @@ class Wiring:
         free = next((name for name in names if name not in taken), "")
         return output if output in names else free or next(iter(names), "")
 
+    def moved(self, places: Mapping[str, Place]) -> Wiring:
+        """Return the graph with some nodes elsewhere."""
+        layout = self.layout.moved(places)
+        return self if layout is self.layout else replace(self, layout=layout)
 
-def wiring_of(sketch: Sketch, *, inner: bool) -> Wiring:
-    """Return the graph of a sketch's own passes, or of all passes that run, those inside techniques."""
+
+def wiring_of(sketch: Sketch, inside: str | None = None) -> Wiring:
+    """Return the graph of a sketch's own passes, or of those that run ``inside`` one of them; "": in all."""
     flat = flatten(sketch)
-    nodes = [leaf.path if inner else leaf.path.partition(".")[0] for leaf in leaves_of(flat.nodes)]
+    head = f"{inside}." if inside else ""
+    paths = [leaf.path for leaf in leaves_of(flat.nodes) if leaf.path.startswith(head)]
+    nodes = paths if inside is not None else [path.partition(".")[0] for path in paths]
     refs = {node: _main(flat, node) for node in nodes}
-    if inner:
-        wires = _inner_wires(flat)
+    if inside is not None:
+        wires = tuple(w for w in _inner_wires(flat) if w.giver in refs and w.reader in refs)
         inputs: dict[str, tuple[str, ...]] = {w.reader: ("",) for w in wires}
         outputs: dict[str, tuple[str, ...]] = {w.giver: ("",) for w in wires}
     else:
@@ -272,21 +286,51 @@ class Chooser:
 
     after: str = ""  # behind which pass; "" before the view
     output: str = ""  # that the wire let go in the empty was pulled from; "" where there was none
+    on: Wire | None = None  # the wire that the new pass goes on
     search: str = ""
     marked: int = 0  # the entry that Enter adds
     opens: bool = False  # it is to open in the next frame
-    on: bool = False
+    is_open: bool = False
     catalogue: Catalogue = field(default_factory=Catalogue)
+    _carried: tuple[str, int] = ("", 0)  # by that wire: name, how many numbers
 
-    def open(self, sketch: Sketch, after: str, output: str = "") -> None:
-        """Open it behind a pass."""
-        self.after, self.output, self.search, self.marked = after, output, "", 0
-        self.opens = self.on = True
+    def open(self, sketch: Sketch, after: str, output: str = "", on: Wire | None = None) -> None:
+        """Open it behind a pass, or for one on a wire."""
+        self.after, self.output, self.on, self.search, self.marked = after, output, on, "", 0
+        self._carried = carried_by(sketch.graph, on) if on is not None else ("", 0)
+        self.opens = self.is_open = True
         self.catalogue.begin(sketch)
 
     def outputs(self, wiring: Wiring) -> tuple[str, ...]:
         """Return what the new pass may go on from."""
+        if self.on is not None:
+            return (self._carried[0],)
         return (self.output,) if self.output else wiring.outputs.get(self.after, ())
+
+    def entries(self, wiring: Wiring, pictured: Container[str] = ()) -> list[Entry]:
+        """Return what is found and fits there, best first: on a wire and behind an output, what takes it."""
+        found = self.catalogue.found(self.search, self.outputs(wiring), pictured)
+        if self.on is not None:
+            return [e for e in found if e.inputs and output_for(e.outputs, *self._carried)]
+        return [e for e in found if e.inputs] if self.output else found
+
+
+@dataclass(frozen=True)
+class Pull:
+    """A wire that is begun at an output of a pass."""
+
+    giver: str
+    output: str
+    by_keys: bool = False
+
+
+@dataclass
+class _Frame:
+    """What of the tab is on the screen."""
+
+    drawn: bool = False  # in this frame, so far
+    on: bool = False  # in the last
+    stale: bool = False  # thumbnails are
 
 
 @dataclass
@@ -294,20 +338,18 @@ class Graph:
     """The tab of the passes."""
 
     session: Session
-    inner: bool = False  # passes inside techniques, too
+    inside: str | None = None  # the pass whose inner passes are drawn; "": all; None: the sketch's own
     timed: bool | None = None  # each pass is timed; None: while the picture is still
     chosen: str = ""  # the node that keys act on
+    wire: Pin | None = None  # the wire that they act on: reader and input
     has_keys: bool = False  # the keys are the graph's
     gets_keys: bool = False  # as soon as the tab is drawn
     took_key: bool = False  # in this frame it has used one
     touched: bool = False  # the graph was used: its textures are wanted
-    pulled: tuple[str, str] | None = None  # pass and output of a wire that is begun
-    by_keys: bool = False  # it was begun by a key
+    pulled: Pull | None = None
     chooser: Chooser = field(default_factory=Chooser)
-    _drawn: bool = False
-    _on: bool = False
-    _stale: bool = False
-    _wiring: tuple[object, bool, Wiring] | None = None  # of which sketch's passes, with those inside
+    _frame: _Frame = field(default_factory=_Frame)
+    _wiring: tuple[object, str | None, Wiring] | None = None  # of which sketch's passes, inside which
     thumbnails: Thumbnails = field(init=False)
     pictures: Pictures = field(init=False)
 
@@ -317,7 +359,7 @@ class Graph:
     @property
     def on(self) -> bool:
         """Whether the tab was on the screen in the last frame."""
-        return self._on
+        return self._frame.on
 
     @property
     def sketch(self) -> Sketch | None:
@@ -327,16 +369,39 @@ class Graph:
         return latest.sketch if latest is not None else drafts.sketch
 
     def wiring(self, sketch: Sketch) -> Wiring:
-        """Return the graph of a sketch; worked out once for each."""
-        if self._wiring is None or self._wiring[0] is not sketch.graph or self._wiring[1] != self.inner:
-            self._wiring = sketch.graph, self.inner, wiring_of(sketch, inner=self.inner)
-            if self.chosen not in self._wiring[2].refs:
-                self.chosen = ""
-        return self._wiring[2]
+        """Return the graph of a sketch; worked out once for each. A pass that is gone forgets its place."""
+        places = self.session.view.places
+        if self._wiring is None or self._wiring[0] is not sketch.graph or self._wiring[1] != self.inside:
+            names = [spec.name for spec in sketch.graph.passes]
+            self.inside = self.inside if self.inside in (None, "", *names) else None
+            self._wiring = sketch.graph, self.inside, wiring_of(sketch, self.inside)
+            wires = self._wiring[2].wires
+            self.chosen = self.chosen if self.chosen in self._wiring[2].refs else ""
+            self.wire = self.wire if self.wire in [(wire.reader, wire.input) for wire in wires] else None
+            for node in [node for node in places if node.partition(".")[0] not in names]:
+                del places[node]
+        return self._wiring[2].moved(places)
+
+    def place(self, node: str, place: Place) -> None:
+        """Move a node; the others stay where they are."""
+        places = self.session.view.places
+        places.pop(node, None)
+        places[node] = place
+        while len(places) > MAX_PLACES:
+            del places[next(iter(places))]
+
+    def tidy(self) -> None:
+        """Have all nodes where they are worked out to be."""
+        self.session.view.places.clear()
 
     def leave(self) -> None:
-        """Give the keys back to the window; a wire that was begun is let go."""
-        self.has_keys, self.pulled = False, None
+        """Let go of a wire that was begun; else go out of a technique; else give the keys back."""
+        if self.pulled is not None:
+            self.pulled = None
+        elif self.inside:
+            self.chosen, self.inside = self.inside, None
+        else:
+            self.has_keys = False
 
     def is_refused(self, giver: str, reader: str) -> bool:
         """Return whether a wire from one pass to another would close a circle."""
@@ -345,13 +410,32 @@ class Graph:
 
     def step(self, across: int, down: int) -> None:
         """Choose the next node to one side; with none chosen, the first."""
-        if self._wiring is not None:
-            self.chosen = nearest_node(self._wiring[2].layout, self.chosen, across, down)
+        sketch = self.sketch
+        if sketch is not None:
+            wiring = self.wiring(sketch)
+            self.chosen = nearest_node(wiring.layout, self.chosen, across, down, wiring.edges)
+
+    def step_on(self, by: int) -> None:
+        """Choose the next node or the one before, in the order in which they run; round again at the ends."""
+        nodes = list(self._wiring[2].refs) if self._wiring is not None else []
+        at = nodes.index(self.chosen) + by if self.chosen in nodes else min(by, 0)
+        self.chosen, self.wire = nodes[at % len(nodes)] if nodes else "", None
+
+    def step_wire(self) -> None:
+        """Choose the next wire of the node that is chosen, those to it first; after the last, none."""
+        wires = self._wiring[2].wires if self._wiring is not None and self.inside is None else ()
+        pins = [
+            (w.reader, w.input)
+            for end in ("reader", "giver")
+            for w in wires
+            if getattr(w, end) == self.chosen
+        ]
+        at = pins.index(self.wire) + 1 if self.wire in pins else 0
+        self.wire = pins[at] if at < len(pins) else None
 
     def entries(self, wiring: Wiring) -> list[Entry]:
         """Return what may be added, best first; of equals what shipped sketches show."""
-        chooser = self.chooser
-        return chooser.catalogue.found(chooser.search, chooser.outputs(wiring), self.pictures.cells)
+        return self.chooser.entries(wiring, self.pictures.cells)
 
     @property
     def times(self) -> bool:
@@ -364,7 +448,7 @@ class Graph:
 
         ``now``: seconds of any clock.
         """
-        self._drawn = self._on = True
+        self._frame.drawn = self._frame.on = True
         self.took_key = False
         if self.gets_keys:
             self.has_keys, self.touched, self.gets_keys = True, True, False
@@ -372,14 +456,14 @@ class Graph:
         if sketch is None:
             return None
         wiring = self.wiring(sketch)
-        self._stale = self.thumbnails.refresh(wiring.refs.values(), now)
+        self._frame.stale = self.thumbnails.refresh(wiring.refs.values(), now)
         return wiring
 
     def end(self) -> None:
         """End a frame: where the tab was not drawn in it, it has no keys, and its pictures are released."""
-        self._on, self._drawn = self._drawn, False
-        if not self._on:
-            self.has_keys = self.took_key = self.touched = self._stale = self.chooser.on = False
+        self._frame = _Frame(on=self._frame.drawn, stale=self._frame.stale and self._frame.drawn)
+        if not self.on:
+            self.has_keys = self.took_key = self.touched = self.chooser.is_open = False
             self.release()
 
     def release(self) -> None:
@@ -390,9 +474,9 @@ class Graph:
     @property
     def waits(self) -> bool:
         """Whether thumbnails are still to be drawn."""
-        return self._on and self._stale
+        return self.on and self._frame.stale
 
     @property
     def reads(self) -> bool:
         """Whether the chooser still reads techniques."""
-        return self._on and self.chooser.on and not self.chooser.catalogue.is_whole
+        return self.on and self.chooser.is_open and not self.chooser.catalogue.is_whole

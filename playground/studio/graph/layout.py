@@ -9,8 +9,11 @@ near to that middle as the others leave room for; no column is higher than the f
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from playground.studio.picture.view import Place
 
 Edge = tuple[str, str]
 """From who gives to who reads."""
@@ -20,6 +23,7 @@ GAP = 0.2
 """Between two nodes of a column, in heights of a node."""
 
 _SWEEPS = 8
+_WIDE = 0.8  # of a node, in columns: what is so far apart has room between
 _Node = str | tuple[str, int]  # a pass, or where the wires of one cross a column
 
 
@@ -27,19 +31,27 @@ _Node = str | tuple[str, int]  # a pass, or where the wires of one cross a colum
 class Layout:
     """A graph's nodes: ``y`` is that of their middle, downwards, in heights of a node."""
 
-    places: Mapping[str, tuple[int, float]]  # of each pass: column from the left, y
+    places: Mapping[str, Place]  # of each pass: column from the left, y
     lanes: Mapping[tuple[str, int], float]  # of the wires of a pass in a column that they cross: y
 
     @property
-    def size(self) -> tuple[int, float]:
-        """Columns, and height from the upper edge of the highest node to the lower edge of the lowest."""
+    def bounds(self) -> tuple[float, float, float, float]:
+        """The first column, the upper edge of the highest node, the last column, the lower edge."""
+        columns = [column for column, _ in self.places.values()] or [0.0]
+        tops = [y - 0.5 for _, y in self.places.values()] + [y - LANE / 2 for y in self.lanes.values()]
         ends = [y + 0.5 for _, y in self.places.values()] + [y + LANE / 2 for y in self.lanes.values()]
-        return max((c for c, _ in self.places.values()), default=-1) + 1, max(ends, default=0.0)
+        return min(columns), min(tops, default=0.0), max(columns), max(ends, default=0.0)
 
     def route(self, edge: Edge) -> list[tuple[int, float]]:
         """Return the columns that a wire crosses between its nodes, and where."""
         (first, _), (last, _) = self.places[edge[0]], self.places[edge[1]]
-        return [(column, self.lanes[edge[0], column]) for column in range(first + 1, last)]
+        columns = range(math.ceil(first + _WIDE), math.floor(last - _WIDE) + 1)
+        return [(c, self.lanes[edge[0], c]) for c in columns if (edge[0], c) in self.lanes]
+
+    def moved(self, places: Mapping[str, Place]) -> Layout:
+        """Return the layout with some nodes elsewhere; the others, and the lanes, stay where they are."""
+        own = {node: place for node, place in places.items() if node in self.places}
+        return replace(self, places={**self.places, **own}) if own else self
 
 
 def layout_of(nodes: Sequence[str], edges: Sequence[Edge]) -> Layout:
@@ -140,15 +152,24 @@ def _mean(values: Sequence[float], otherwise: float) -> float:
     return sum(values) / len(values) if values else otherwise
 
 
-def nearest_node(layout: Layout, node: str, across: int, down: int) -> str:
-    """Return the node that an arrow key leads to: one column over, or the next in the column; else itself."""
+def nearest_node(layout: Layout, node: str, across: int, down: int, edges: Iterable[Edge] = ()) -> str:
+    """Return the node that an arrow key leads to; where there is none, the node itself.
+
+    ``across``: along a wire, else one column over. ``down``: the next in the column.
+    """
     if node not in layout.places:
         return next(iter(layout.places), "")
     column, y = layout.places[node]
-    if across:
-        columns = [c for c, _ in layout.places.values() if (c - column) * across > 0]
-        to = min(columns, key=lambda c: abs(c - column), default=-1)
-        found = [other for other, (c, _) in layout.places.items() if c == to]
+    if down:
+        found = [n for n, (c, at) in layout.places.items() if abs(c - column) < _WIDE and (at - y) * down > 0]
     else:
-        found = [other for other, (c, at) in layout.places.items() if c == column and (at - y) * down > 0]
-    return min(found, key=lambda other: abs(layout.places[other][1] - y), default=node)
+        joined = {b if a == node else a for a, b in edges if node in (a, b)}
+        aside = {n: (c - column) * across for n, (c, _) in layout.places.items() if (c - column) * across > 0}
+        least = min(aside.values(), default=0.0)
+        found = [n for n in aside if n in joined] or [n for n, c in aside.items() if c < least + _WIDE]
+
+    def far(other: str) -> float:
+        c, at = layout.places[other]
+        return abs(c - column) + abs(at - y)
+
+    return min(found, key=far, default=node)

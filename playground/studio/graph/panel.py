@@ -1,22 +1,24 @@
 """The tab of the passes: their graph, drawn by ourselves so that it is crisp at every zoom.
 
-The wheel zooms, a drag moves the graph; it fits its pane until then, and again after F. A click chooses a
-node, a double click shows its texture from above. A drag from an output to an input wires; let go in the
-empty, it asks what to add there. With the keys, which a click gives the graph and Esc takes away, all of
-that is done as well.
+The wheel zooms, a drag moves the graph or a node; it fits its pane until then, and again after F. A click
+chooses a node or a wire, a double click opens a node: the passes inside it, or its code. A drag from an
+output to an input wires; let go in the empty, it asks what to add there. A node dropped on a wire goes
+between. With the keys, which a click gives the graph and Esc takes away, all of that is done as well.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
 from playground.sketch.edit_passes import Wire
+from playground.sketch.model import Kernel
 from playground.studio import theme
 from playground.studio.bench import Workbench
-from playground.studio.draw import button, ctrl_held, disabled, fitting, letters
+from playground.studio.draw import button, ctrl_held, disabled, fitting, inked, letters
 from playground.studio.graph.canvas_panel import (
     HIGH,
     MOST,
@@ -25,10 +27,12 @@ from playground.studio.graph.canvas_panel import (
     ZOOMS,
     Canvas,
     Pins,
+    Span,
     corner_of,
     distance,
     draw_wire,
     is_near,
+    middle_of,
     nearest_pin,
     node_at,
     pins_of,
@@ -37,9 +41,11 @@ from playground.studio.graph.canvas_panel import (
     write,
 )
 from playground.studio.graph.chooser_panel import draw_chooser
-from playground.studio.graph.graph import Graph, Wiring, cost_of
+from playground.studio.graph.edits import technique_at
+from playground.studio.graph.graph import Graph, Pin, Pull, Wiring, cost_of
 from playground.studio.interface import Tab
 from playground.studio.language import tr
+from playground.studio.picture.view import Place
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 
@@ -47,6 +53,8 @@ _THUMB = 54.0
 _TEXT = 78.0  # where a node's text begins
 _LEGIBLE = 0.45  # of the size of letters: below, nothing is written
 _NEAR = 8.0  # [units] that the mouse may be away from a pin or a wire
+_PLUS = 9.0  # [units] radius of the + on a wire
+_NUDGE = {(-1, 0): (-0.25, 0.0), (1, 0): (0.25, 0.0), (0, -1): (0.0, -0.5), (0, 1): (0.0, 0.5)}
 _F = imgui.ButtonFlags_
 
 
@@ -68,6 +76,16 @@ class _Node:
     is_shown: bool
 
 
+@dataclass
+class _Drag:
+    """A node that is dragged."""
+
+    node: str
+    grip: tuple[float, float]  # from its corner to the mouse [units of the graph]
+    place: Place  # where it is now
+    target: Wire | None = None  # the wire that it is over
+
+
 class GraphPanel:
     """Draws the graph of one window, and does what is asked for in it."""
 
@@ -75,9 +93,10 @@ class GraphPanel:
         self._bench = bench
         self._zoom, self._pan = 1.0, (0.0, 0.0)
         self._fits = True  # until the graph is moved or zoomed by hand
-        self._wire: tuple[str, str] | None = None  # the wire that is chosen: reader and input
         self._rests = False  # the mouse does, over the pane: what is under it is explained
+        self._drag: _Drag | None = None
         self._menu = ""  # the node whose menu is open
+        self._wire_menu: Pin | None = None  # the wire whose menu is open: reader and input
 
     @property
     def graph(self) -> Graph:
@@ -100,20 +119,28 @@ class GraphPanel:
         draw = imgui.get_window_draw_list()
         draw.push_clip_rect(corner, ImVec2(corner.x + room.x, corner.y + room.y), True)
         self._ground(canvas, wiring)
+        wiring = self._drag_on(wiring, canvas)
         pins = pins_of(wiring, canvas)
         lit = self._wires(wiring, canvas, pins)
-        for node in wiring.refs:
+        dragged = self._drag.node if self._drag is not None else ""
+        for node in sorted(wiring.refs, key=lambda node: node == dragged):
             self._draw_node(node, wiring, canvas, look)
-        if not graph.inner:
+        if graph.inside is None:
             self._pull(wiring, canvas, pins)
+            self._plus(lit, wiring, canvas, pins, look)
         self._pin_marks(wiring, canvas, pins)
+        self._drop()
         if lit is not None and imgui.is_mouse_clicked(0):
-            self._wire, graph.chosen = (lit.reader, lit.input), ""
+            graph.wire, graph.chosen = (lit.reader, lit.input), ""
+        if lit is not None and imgui.is_mouse_clicked(1):
+            self._open_menu("wire menu", wire=(lit.reader, lit.input))
         if graph.has_keys:
             edge = ImVec2(corner.x + room.x - 1, corner.y + room.y - 1)
             draw.add_rect(ImVec2(corner.x + 1, corner.y + 1), edge, theme.packed(theme.palette.accent, 0.7))
         draw.pop_clip_rect()
         self._draw_menu(wiring)
+        self._draw_wire_menu(wiring)
+        self._draw_ground_menu()
         draw_chooser(bench, wiring, look)
         self._keys(wiring)  # after it: the "+" that opens it is no letter of its search
 
@@ -121,7 +148,7 @@ class GraphPanel:
 
     def _switches(self, look: Theme, wiring: Wiring) -> None:
         graph = self.graph
-        with disabled(graph.inner):
+        with disabled(graph.inside is not None):
             if button(
                 f"+ {tr('Pass')}###add pass", tr("Add a pass before the view; + on a node adds one behind it")
             ):
@@ -130,24 +157,32 @@ class GraphPanel:
         if button(f"{tr('Fit')}###fit", tr("Fit the graph to its pane (F)")):
             self._fits = True
         imgui.same_line()
-        _, graph.inner = imgui.checkbox(f"{tr('Inside techniques')}###inner", graph.inner)
+        if graph.inside:
+            if button(f"‹ {graph.inside}###out", tr("Back to the sketch's own passes (Esc)")):
+                self._go_inside(None)
+        else:
+            changed, inner = imgui.checkbox(f"{tr('Inside techniques')}###inner", graph.inside is not None)
+            if changed:
+                self._go_inside("" if inner else None)
         imgui.same_line()
         changed, timed = imgui.checkbox(f"{tr('Time each pass')}###timed", graph.times)
         if changed:
             graph.timed = timed
         imgui.same_line()
         imgui.align_text_to_frame_padding()
-        if graph.pulled is not None and graph.by_keys:
+        if graph.pulled is not None and graph.pulled.by_keys:
             words = tr(
-                "Wire from {name}: arrows choose a pass, Enter joins, Esc lets go", name=graph.pulled[0]
+                "Wire from {name}: arrows choose a pass, Enter joins, Esc lets go", name=graph.pulled.giver
             )
         elif graph.has_keys:
             words = tr(
-                "Arrows, Enter shows, + adds, W wires, M mutes, D duplicates, Del deletes, Ctrl+arrows move"
+                "Arrows, Enter opens, + adds, W wires, Shift+arrows choose a wire, M mutes, S shows, Ctrl+D"
+                " duplicates, Del deletes, Ctrl+arrows: earlier, later, Ctrl+Shift+arrows move, T tidies"
             )
         else:
             words = tr(
-                "Click: choose. Double click: show. Drag from a pin: wire. Right click: all that can be done"
+                "Click: choose. Double click: open. Drag: move, onto a wire: between. From a pin: wire."
+                " Right click: all that can be done"
             )
         room = imgui.get_content_region_avail().x
         imgui.text_disabled(fitting(words, room))
@@ -156,12 +191,12 @@ class GraphPanel:
 
     def _canvas(self, corner: ImVec2, room: ImVec2, wiring: Wiring, scale: float) -> Canvas:
         if self._fits:
-            columns, high = wiring.layout.size
-            wide, high = max(columns, 1) * STEP - (STEP - WIDE), max(high, 1.0) * HIGH
+            first, top, last, end = wiring.layout.bounds
+            wide, high = (last - first) * STEP + WIDE, max(end - top, 1.0) * HIGH
             fit = min((room.x - 24 * scale) / wide, (room.y - 12 * scale) / high) / scale
             self._zoom = min(max(fit, ZOOMS[0]), MOST)
             k = self._zoom * scale
-            self._pan = (room.x - wide * k) / 2, (room.y - high * k) / 2
+            self._pan = (room.x - wide * k) / 2 - first * STEP * k, (room.y - high * k) / 2 - top * HIGH * k
         return Canvas(corner, room, self._zoom, self._pan, scale)
 
     def _ground(self, canvas: Canvas, wiring: Wiring) -> None:
@@ -173,8 +208,11 @@ class GraphPanel:
         inside = canvas.holds(io.mouse_pos) and imgui.is_window_hovered(
             imgui.HoveredFlags_.allow_when_blocked_by_active_item
         )
+        over = node_at(wiring, canvas, io.mouse_pos) if inside else ""
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
             self._fits = True
+        if imgui.is_item_hovered() and imgui.is_mouse_clicked(1) and not over:
+            self._open_menu("ground menu")
         if imgui.is_item_active() and (io.mouse_delta.x or io.mouse_delta.y) and graph.pulled is None:
             self._pan = self._pan[0] + io.mouse_delta.x, self._pan[1] + io.mouse_delta.y
             self._fits = False
@@ -187,7 +225,7 @@ class GraphPanel:
         if imgui.is_mouse_clicked(0) and not imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
             graph.has_keys = inside
             if inside:
-                self._wire, graph.chosen = None, node_at(wiring, canvas, io.mouse_pos)
+                graph.wire, graph.chosen = None, over
 
     def _magnify(self, by: float, x: float, y: float) -> None:
         new = min(max(self._zoom * by, ZOOMS[0]), ZOOMS[1])
@@ -203,28 +241,98 @@ class GraphPanel:
         hovers = canvas.holds(mouse) and imgui.is_window_hovered() and self.graph.pulled is None
         over = node_at(wiring, canvas, mouse)
         lines = [(wire, wire_spans(wire, wiring, canvas, pins)) for wire in wiring.wires]
-        if hovers and not over and not self.graph.inner:
-            reach = _NEAR * canvas.scale * 0.7
-            near = next((wire for wire, spans in lines if is_near(spans, canvas, mouse, reach)), None)
+        drag = self._drag
+        if drag is None and hovers and not over and self.graph.inside is None:
+            near = _wire_at(lines, canvas, [mouse], _NEAR * canvas.scale * 0.7, round_plus=True)
+        if drag is not None and self.graph.inside is None:
+            x, y = corner_of(wiring, drag.node)
+            middle = canvas.place(x + WIDE / 2, y + HIGH / 2)
+            free = [(wire, spans) for wire, spans in lines if drag.node not in (wire.giver, wire.reader)]
+            drag.target = _wire_at(free, canvas, [mouse, middle], _NEAR * canvas.scale)
         muted = self._bench.session.view.muted
         for wire, spans in lines:
-            chosen = self._wire == (wire.reader, wire.input)
+            chosen = self.graph.wire == (wire.reader, wire.input)
+            is_target = drag is not None and wire is drag.target
             touches = self.graph.chosen in (wire.giver, wire.reader) and bool(self.graph.chosen)
             ink = (
                 theme.palette.accent
-                if wire is near or chosen
+                if wire is near or chosen or is_target
                 else theme.palette.ink
                 if touches
                 else theme.palette.dim
             )
+            if (
+                is_target
+                and drag is not None
+                and self._bench.passes.why_not(drag.node, wire.reader, wire.input)
+            ):
+                ink = theme.palette.alarm
             alpha = 0.35 if {wire.giver, wire.reader} & muted else 0.9
-            thick = (3.0 if chosen or wire is near else 2.0) * max(min(canvas.zoom, 1.2), 0.5) * canvas.scale
+            thick = (
+                (3.0 if chosen or wire is near or is_target else 2.0)
+                * max(min(canvas.zoom, 1.2), 0.5)
+                * canvas.scale
+            )
             draw_wire(spans, canvas, theme.packed(ink, alpha), thick)
         if near is not None and self._rests:
-            source = f"{near.giver}:{near.output}" if near.output else near.source
             note = tr("found by its name") if not near.is_written else tr("Del takes it away")
-            imgui.set_tooltip(f"{source} → {near.reader}.{near.input}\n{note}")
+            imgui.set_tooltip(f"{_wire_name(near)}\n{note}")
         return near
+
+    def _plus(self, lit: Wire | None, wiring: Wiring, canvas: Canvas, pins: Pins, look: Theme) -> None:
+        """Draw a + in the middle of the wire under the mouse, or of the one that is chosen."""
+        pin = (lit.reader, lit.input) if lit is not None else self.graph.wire
+        wire = next((w for w in wiring.wires if (w.reader, w.input) == pin), None)
+        if wire is None or self._drag is not None or self.graph.pulled is not None:
+            return
+        middle, side = middle_of(wire_spans(wire, wiring, canvas, pins)), _PLUS * canvas.scale
+        imgui.set_cursor_screen_pos(ImVec2(middle.x - side, middle.y - side))
+        if imgui.invisible_button("+ wire", ImVec2(2 * side, 2 * side)):
+            self._ask_on(wire)
+        palette, draw = theme.palette, imgui.get_window_draw_list()
+        ground = palette.pressed if imgui.is_item_hovered() else palette.hover
+        draw.add_circle_filled(middle, side, theme.packed(ground))
+        draw.add_circle(middle, side, theme.packed(palette.accent))
+        if imgui.is_item_hovered():
+            imgui.set_tooltip(tr("Add a pass on this wire (+)"))
+        arm, ink, thick = 0.5 * side, theme.packed(palette.ink), 1.5 * canvas.scale
+        draw.add_line(ImVec2(middle.x - arm, middle.y), ImVec2(middle.x + arm, middle.y), ink, thick)
+        draw.add_line(ImVec2(middle.x, middle.y - arm), ImVec2(middle.x, middle.y + arm), ink, thick)
+
+    # ── nodes that are dragged ───────────────────────────────────────────────
+
+    def _drag_on(self, wiring: Wiring, canvas: Canvas) -> Wiring:
+        """Return the graph with the node that is dragged where the mouse has it."""
+        drag = self._drag
+        if drag is None or drag.node not in wiring.refs:
+            self._drag = None
+            return wiring
+        x, y = canvas.units(imgui.get_mouse_pos())
+        drag.place = (x - drag.grip[0]) / STEP, (y - drag.grip[1]) / HIGH + 0.5
+        return wiring.moved({drag.node: drag.place})
+
+    def _drop(self) -> None:
+        """Say what becomes of the node that is dragged, and do that where it is let go."""
+        drag, edits = self._drag, self._bench.passes
+        if drag is None:
+            return
+        wire = drag.target
+        reason = edits.why_not(drag.node, wire.reader, wire.input) if wire is not None else ""
+        if wire is not None:
+            words = tr(
+                "{name} between {giver} and {reader}", name=drag.node, giver=wire.giver, reader=wire.reader
+            )
+            with inked(theme.palette.alarm if reason else theme.palette.ink):
+                imgui.set_tooltip(reason or words)
+        if imgui.is_mouse_down(0):
+            return
+        self._drag = None
+        if wire is None:
+            self.graph.place(drag.node, drag.place)
+        elif reason:
+            self._bench.notices.say(reason)
+        elif edits.put(drag.node, wire.reader, wire.input):
+            self._bench.session.view.places.pop(drag.node, None)  # where it is now is worked out
 
     def _pull(self, wiring: Wiring, canvas: Canvas, pins: Pins) -> None:
         """Draw the wire that is pulled from an output, and join or ask where it is let go."""
@@ -235,24 +343,22 @@ class GraphPanel:
         out = nearest_pin(pins.outputs, mouse, _NEAR * canvas.scale) if hovers else None
         if graph.pulled is None:
             if out is not None and imgui.is_mouse_clicked(0):
-                graph.pulled, graph.by_keys = out, False
+                graph.pulled = Pull(*out)
                 graph.chosen = out[0]
             return
-        start = pins.outputs.get(graph.pulled)
+        giver, output, by_keys = graph.pulled.giver, graph.pulled.output, graph.pulled.by_keys
+        start = pins.outputs.get((giver, output))
         if start is None:
             graph.pulled = None
             return
-        giver, output = graph.pulled
         target = (
-            nearest_pin(pins.inputs, mouse, 1.6 * _NEAR * canvas.scale)
-            if hovers and not graph.by_keys
-            else None
+            nearest_pin(pins.inputs, mouse, 1.6 * _NEAR * canvas.scale) if hovers and not by_keys else None
         )
-        over = graph.chosen if graph.by_keys else node_at(wiring, canvas, mouse)
+        over = graph.chosen if by_keys else node_at(wiring, canvas, mouse)
         if target is None and over and over != giver:
             target = over, wiring.input_for(giver, output, over)
         refused = target is not None and (not target[1] or graph.is_refused(giver, target[0]))
-        end = start if graph.by_keys else mouse
+        end = start if by_keys else mouse
         if target is not None:
             x, y = corner_of(wiring, target[0])
             end = pins.inputs.get(target) or canvas.place(x, y + HIGH / 2)  # a node without an input
@@ -261,7 +367,7 @@ class GraphPanel:
         draw = imgui.get_window_draw_list()
         points = ImVec2(start.x + bend, start.y), ImVec2(end.x - bend, end.y)
         draw.add_bezier_cubic(start, *points, end, ink, 3 * canvas.scale)
-        if graph.by_keys and target is not None:
+        if by_keys and target is not None:
             imgui.set_next_window_pos(
                 ImVec2(end.x, end.y + 2 * _NEAR * canvas.scale)
             )  # there, not at the mouse
@@ -269,7 +375,7 @@ class GraphPanel:
             self._say_refusal(giver, target)
         elif target is not None:
             imgui.set_tooltip(f"{giver}:{output} → {target[0]}.{target[1]}")
-        if not graph.by_keys and not imgui.is_mouse_down(0):
+        if not by_keys and not imgui.is_mouse_down(0):
             graph.pulled = None
             if target is not None and not refused:
                 self._bench.passes.wire(giver, output, *target)
@@ -287,18 +393,19 @@ class GraphPanel:
         draw, mouse = imgui.get_window_draw_list(), imgui.get_mouse_pos()
         wired = {(wire.reader, wire.input) for wire in wiring.wires}
         radius = max(min(canvas.k, 1.3 * canvas.scale), 0.5 * canvas.scale)
-        hovers = canvas.holds(mouse) and imgui.is_window_hovered() and not self.graph.inner
+        hovers = canvas.holds(mouse) and imgui.is_window_hovered() and self.graph.inside is None
         lit = nearest_pin(pins.outputs, mouse, _NEAR * canvas.scale) if hovers else None
         lit_in = nearest_pin(pins.inputs, mouse, _NEAR * canvas.scale) if hovers and lit is None else None
         for pin, point in pins.inputs.items():
             ink = theme.packed(theme.palette.accent if pin == lit_in else theme.palette.ink)
-            if pin in wired or self.graph.inner:
+            if pin in wired or self.graph.inside is not None:
                 draw.add_circle_filled(point, 3.4 * radius, ink)
             else:
                 draw.add_circle_filled(point, 3.4 * radius, theme.packed(theme.palette.ground))
                 draw.add_circle(point, 3.4 * radius, ink)
         for pin, point in pins.outputs.items():
-            on = pin in (lit, self.graph.pulled)
+            pulled = self.graph.pulled
+            on = pin == lit or (pulled is not None and pin == (pulled.giver, pulled.output))
             draw.add_circle_filled(
                 point,
                 (5.4 if on else 3.8) * radius,
@@ -338,22 +445,28 @@ class GraphPanel:
         imgui.invisible_button(f"node {name}", ImVec2(max(far.x - low.x - 12 * k, 1), max(far.y - low.y, 1)))
         if imgui.is_item_hovered() and graph.pulled is None:
             if imgui.is_mouse_double_clicked(0):
-                self._show(name, ref)
+                self._open(name)
             if imgui.is_mouse_clicked(1):
-                graph.chosen, graph.has_keys, self._menu = name, True, name
-                imgui.open_popup("node menu")
+                graph.chosen, graph.wire = name, None
+                self._open_menu("node menu", node=name)
             on_picture = (
                 imgui.get_mouse_pos().x < canvas.place(x + _TEXT, y).x
             )  # else it would hide the buttons
             if on_picture and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
                 lines = [_tooltip(name, session), self._bench.inspection.reasons.text(name)]
                 imgui.set_tooltip("\n".join(filter(None, lines)))
+        if imgui.is_item_active() and imgui.is_mouse_dragging(0, 4 * canvas.scale) and self._drag is None:
+            mouse, delta = imgui.get_mouse_pos(), imgui.get_mouse_drag_delta(0, 0.0)
+            at = canvas.units(ImVec2(mouse.x - delta.x, mouse.y - delta.y))
+            if graph.pulled is None:
+                self._drag = _Drag(name, (at[0] - x, at[1] - y), wiring.layout.places[name])
+                self._fits = False
         self._draw_box(node, low, far, canvas)
         self._draw_picture(node, canvas.place(x + 14, y + 5), _THUMB * k)
         if canvas.k < _LEGIBLE:  # what could not be read is not written
             return
         is_marked = node.is_hovered or node.is_muted or node.is_shown or name == graph.chosen
-        has_buttons = is_marked and not graph.inner and name != "view"
+        has_buttons = is_marked and graph.inside is None and name != "view"
         self._write_words(node, canvas, look, has_buttons=has_buttons)
         if has_buttons:
             self._draw_buttons(node, canvas, look)
@@ -430,9 +543,6 @@ class GraphPanel:
 
     # ── what can be done ─────────────────────────────────────────────────────
 
-    def _show(self, node: str, ref: str) -> None:
-        self._bench.session.show(None if node.partition(".")[0] == "view" else ref)
-
     def _ask(self, after: str, output: str = "") -> None:
         """Open the chooser for a pass behind another."""
         sketch = self.graph.sketch
@@ -440,11 +550,46 @@ class GraphPanel:
             self.graph.touched = True
             self.graph.chooser.open(sketch, "" if after == "view" else after, output)
 
+    def _ask_on(self, wire: Wire) -> None:
+        """Open the chooser for a pass on a wire."""
+        sketch = self.graph.sketch
+        if sketch is not None:
+            self.graph.touched = True
+            self.graph.chooser.open(sketch, wire.giver, wire.output, wire)
+
+    def _add(self, wiring: Wiring) -> None:
+        """Open the chooser for a pass behind the node that is chosen, or on the wire."""
+        wire = next((w for w in wiring.wires if (w.reader, w.input) == self.graph.wire), None)
+        if wire is not None:
+            self._ask_on(wire)
+        else:
+            self._ask(self.graph.chosen)
+
+    def _open(self, node: str) -> None:
+        """Open a node: the passes inside it, or its code."""
+        graph, sketch = self.graph, self.graph.sketch
+        technique = technique_at(sketch, node) if sketch is not None else None
+        if graph.inside is None and technique is not None and not isinstance(technique, Kernel):
+            self._go_inside(node)
+        else:
+            self._open_code(node)
+
+    def _go_inside(self, node: str | None) -> None:
+        self.graph.inside, self.graph.chosen, self._fits = node, self.graph.inside or "", True
+
+    def _open_code(self, node: str) -> None:
+        sketch = self.graph.sketch
+        technique = technique_at(sketch, node) if sketch is not None else None
+        if technique is None or not technique.path:
+            self._bench.notices.say(tr("{name} has no code of its own", name=node))
+            return
+        self.graph.has_keys = False
+        self._bench.files.open(Path(technique.path), here=True)
+
     def _delete(self) -> None:
         graph, edits = self.graph, self._bench.passes
-        if self._wire is not None:
-            edits.unwire(*self._wire)
-            self._wire = None
+        if graph.wire is not None:
+            edits.unwire(*graph.wire)
         elif graph.chosen:
             edits.delete(graph.chosen)
 
@@ -456,15 +601,20 @@ class GraphPanel:
         graph = self.graph
         outputs = wiring.outputs.get(graph.chosen, ())
         if outputs:
-            graph.pulled, graph.by_keys = (graph.chosen, outputs[0]), True
+            graph.pulled = Pull(graph.chosen, outputs[0], by_keys=True)
+
+    def _nudge(self, wiring: Wiring, step: tuple[int, int]) -> None:
+        """Move the node that is chosen a little."""
+        (column, y), (across, down) = wiring.layout.places[self.graph.chosen], _NUDGE[step]
+        self.graph.place(self.graph.chosen, (column + across, y + down))
 
     def _enter(self, wiring: Wiring) -> None:
-        """Show what is chosen; or join the wire that was begun by a key to it."""
+        """Open what is chosen; or join the wire that was begun by a key to it."""
         graph = self.graph
         if graph.pulled is None:
-            self._show(graph.chosen, wiring.refs[graph.chosen])
+            self._open(graph.chosen)
             return
-        (giver, output), graph.pulled = graph.pulled, None
+        giver, output, graph.pulled = graph.pulled.giver, graph.pulled.output, None
         name = wiring.input_for(giver, output, graph.chosen)
         if giver != graph.chosen and name:
             self._bench.passes.wire(giver, output, graph.chosen, name)
@@ -473,9 +623,9 @@ class GraphPanel:
         """Do what a key asks for while the graph has the keys."""
         graph, io, key = self.graph, imgui.get_io(), imgui.Key
         popup = imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
-        if not graph.has_keys or popup or io.want_text_input or io.key_alt or graph.chooser.on:
+        if not graph.has_keys or popup or io.want_text_input or io.key_alt or graph.chooser.is_open:
             return
-        chosen, edits, ctrl = graph.chosen, self._bench.passes, ctrl_held()
+        chosen, edits, ctrl, own = graph.chosen, self._bench.passes, ctrl_held(), graph.inside is None
         arrows = {
             key.left_arrow: (-1, 0),
             key.right_arrow: (1, 0),
@@ -485,73 +635,151 @@ class GraphPanel:
         for arrow, step in arrows.items():
             if imgui.is_key_pressed(arrow):
                 graph.took_key = True
-                if not ctrl:
-                    graph.step(*step)
-                    self._wire = None
-                elif chosen and not graph.inner:
+                if ctrl and io.key_shift and chosen:
+                    self._nudge(wiring, step)
+                elif ctrl and chosen and own:
                     edits.move(chosen, step[0] or step[1])
+                elif io.key_shift and not ctrl:
+                    graph.step_wire()
+                elif not ctrl:
+                    graph.wire = None
+                    graph.step(*step)
+        acts: list[tuple[imgui.Key, bool, Callable[[], object]]]
         if ctrl:
-            return
-        acts: list[tuple[imgui.Key, bool, Callable[[], object]]] = [
-            (key.f, True, self._fit),
-            (key.enter, bool(chosen), lambda: self._enter(wiring)),
-            (key.keypad_enter, bool(chosen), lambda: self._enter(wiring)),
-        ]
-        if not graph.inner:
-            acts += [
-                (key.m, bool(chosen), lambda: edits.mute(chosen)),
+            acts = [(key.d, bool(chosen) and own, self._duplicate)]
+        else:
+            acts = [
+                (key.f, True, self._fit),
+                (key.t, True, graph.tidy),
+                (key.tab, True, lambda: graph.step_on(-1 if io.key_shift else 1)),
+                (key.enter, bool(chosen), lambda: self._enter(wiring)),
+                (key.keypad_enter, bool(chosen), lambda: self._enter(wiring)),
                 (key.s, bool(chosen), lambda: edits.solo(chosen, wiring.refs[chosen])),
-                (key.d, bool(chosen), self._duplicate),
-                (key.w, bool(chosen), lambda: self._begin_wire(wiring)),
-                (key.delete, bool(chosen) or self._wire is not None, self._delete),
+                (key.m, bool(chosen) and own, lambda: edits.mute(chosen)),
+                (key.w, bool(chosen) and own, lambda: self._begin_wire(wiring)),
+                (key.insert, own, lambda: self._add(wiring)),
+                (key.delete, own and (bool(chosen) or graph.wire is not None), self._delete),
             ]
         for which, can, act in acts:
-            if can and imgui.is_key_pressed(which, repeat=False):
+            if can and imgui.is_key_pressed(which, repeat=which == key.tab):
                 graph.took_key = True
                 act()
-        if "+" in letters() and not graph.inner:
+        if "+" in letters() and own and not ctrl:
             graph.took_key = True
-            self._ask(chosen)
+            self._add(wiring)
 
     def _fit(self) -> None:
         self._fits = True
 
+    def _open_menu(self, menu: str, *, node: str = "", wire: Pin | None = None) -> None:
+        """Open a menu, of a node, a wire or the graph, which gets the keys."""
+        self.graph.has_keys, self._menu, self._wire_menu = True, node, wire
+        if wire is not None:
+            self.graph.wire, self.graph.chosen = wire, ""
+        imgui.open_popup(menu)
+
     def _draw_menu(self, wiring: Wiring) -> None:
+        """Draw the menu of a node."""
+        node, edits, own = self._menu, self._bench.passes, self.graph.inside is None
         if not imgui.begin_popup("node menu"):
             return
-        node, edits, inner = self._menu, self._bench.passes, self.graph.inner
         if node not in wiring.refs:
             imgui.close_current_popup()
             imgui.end_popup()
             return
         imgui.text_disabled(node)
-        is_view, muted = node == "view", node in self._bench.session.view.muted
-        rows: list[tuple[str, str, str, bool, Callable[[], object]]] = [
-            ("show", tr("Show"), tr("Enter"), True, lambda: self._show(node, wiring.refs[node])),
+        ref, is_view, muted = wiring.refs[node], node == "view", node in self._bench.session.view.muted
+        sketch = self.graph.sketch
+        technique = technique_at(sketch, node) if sketch is not None else None
+        has_passes = own and technique is not None and not isinstance(technique, Kernel)
+        mute = tr("No longer muted") if muted else tr("Mute")
+        rows: list[_Row] = [
+            ("inside", tr("Passes inside it"), tr("Enter"), has_passes, lambda: self._go_inside(node)),
+            ("code", tr("Its code"), "" if has_passes else tr("Enter"), True, lambda: self._open_code(node)),
+            ("show", tr("Show"), "S", True, lambda: self._bench.passes.solo(node, ref)),
             ("parameters", tr("Its parameters"), "", True, lambda: self._reveal(node)),
         ]
-        if not inner:
+        if own:
             rows += [
-                (
-                    "mute",
-                    tr("No longer muted") if muted else tr("Mute"),
-                    "M",
-                    not is_view,
-                    lambda: edits.mute(node),
-                ),
+                ("mute", mute, "M", not is_view, lambda: edits.mute(node)),
                 ("behind", tr("Add a pass behind…"), "+", not is_view, lambda: self._ask(node)),
-                ("duplicate", tr("Duplicate"), "D", not is_view, self._duplicate),
+                ("duplicate", tr("Duplicate"), "Ctrl+D", not is_view, self._duplicate),
                 ("earlier", tr("Earlier in the file"), "Ctrl+←", not is_view, lambda: edits.move(node, -1)),
                 ("later", tr("Later in the file"), "Ctrl+→", not is_view, lambda: edits.move(node, 1)),
                 ("delete", tr("Delete"), tr("Del"), not is_view, lambda: edits.delete(node)),
             ]
-        for key, words, shortcut, can, act in rows:
-            if imgui.menu_item_simple(f"{words}###{key} pass", shortcut, False, can):
-                act()
+        _rows("pass", rows)
+        imgui.end_popup()
+
+    def _draw_wire_menu(self, wiring: Wiring) -> None:
+        if not imgui.begin_popup("wire menu"):
+            return
+        wire = next((w for w in wiring.wires if (w.reader, w.input) == self._wire_menu), None)
+        if wire is None:
+            imgui.close_current_popup()
+        else:
+            imgui.text_disabled(_wire_name(wire))
+            pin = wire.reader, wire.input
+            rows: list[_Row] = [
+                ("on", tr("Add a pass here…"), "+", True, lambda: self._ask_on(wire)),
+                (
+                    "cut",
+                    tr("Disconnect"),
+                    tr("Del"),
+                    wire.is_written,
+                    lambda: self._bench.passes.unwire(*pin),
+                ),
+            ]
+            _rows("wire", rows)
+            if not wire.is_written:
+                imgui.text_disabled(tr("found by its name"))
+        imgui.end_popup()
+
+    def _draw_ground_menu(self) -> None:
+        if not imgui.begin_popup("ground menu"):
+            return
+        graph = self.graph
+        rows: list[_Row] = [
+            ("add", tr("Add a pass…"), "+", graph.inside is None, lambda: self._ask("")),
+            ("tidy", tr("Tidy: place all nodes anew"), "T", bool(graph.session.view.places), graph.tidy),
+            ("fit", tr("Fit"), "F", True, self._fit),
+        ]
+        _rows("graph", rows)
         imgui.end_popup()
 
     def _reveal(self, node: str) -> None:
         self._bench.interface.show_pass(node.partition(".")[0])
+
+
+_Row = tuple[str, str, str, bool, Callable[[], object]]
+"""Of a menu: its id, its words, its key, whether it can be done, what it does."""
+
+
+def _rows(menu: str, rows: list[_Row]) -> None:
+    """Draw the rows of a menu, and do what is clicked on."""
+    for key, words, shortcut, can, act in rows:
+        if imgui.menu_item_simple(f"{words}###{key} {menu}", shortcut, False, can):
+            act()
+
+
+def _wire_name(wire: Wire) -> str:
+    source = f"{wire.giver}:{wire.output}" if wire.output else wire.source
+    return f"{source} → {wire.reader}.{wire.input}"
+
+
+_Line = tuple[Wire, tuple[list[Span], list[Span]]]
+
+
+def _wire_at(
+    lines: list[_Line], canvas: Canvas, points: list[ImVec2], reach: float, *, round_plus: bool = False
+) -> Wire | None:
+    """Return the wire at the first of the points that is near one; also near its middle, where its + is."""
+    for point in points:
+        for wire, spans in lines:
+            on_plus = round_plus and distance(middle_of(spans), point) < _PLUS * canvas.scale
+            if on_plus or is_near(spans, canvas, point, reach):
+                return wire
+    return None
 
 
 def _tooltip(node: str, session: Session) -> str:

@@ -21,6 +21,9 @@ from playground.sketch.model import DEFAULT_PICTURE, Camera, Graph, Sketch, Tech
 from playground.sketch.wiring import output_names
 from playground.studio.land.looks import Look
 
+Place = tuple[float, float]
+"""Of a node of the graph: column from the left, and its middle downwards, in heights of a node."""
+
 
 class View:
     """What one session draws; ``revision`` counts the changes."""
@@ -33,7 +36,8 @@ class View:
         self.muted: frozenset[str] = frozenset()  # passes that let through what they are made of
         self.interpolated = True  # what a stopped repeat has not reached is filled
         self.views: dict[int, Camera] = {}  # kept, by number
-        self._next_views: dict[int, Camera] = {}
+        self.places: dict[str, Place] = {}  # of nodes of the graph that were moved
+        self._next_kept: tuple[dict[int, Camera], dict[str, Place]] = {}, {}
         self.exaggeration = 1.0  # how many times higher than it is the terrain is shown
         self.turning = False  # the camera goes round, as on a turntable
         self.turned = 0.0  # [degrees] by which it has gone, for the picture alone
@@ -47,17 +51,19 @@ class View:
         shown: Map | None,
         *,
         views: Mapping[int, Camera] | None = None,
+        places: Mapping[str, Place] | None = None,
         later: bool = False,
     ) -> None:
         """Stop repeats after so many steps, and show a map or, with None, the sketch's own view.
 
-        ``views``: the numbered ones that are kept. ``later``: once the sketch that is being opened is drawn.
+        ``views``: the numbered ones that are kept. ``places``: of the graph's nodes that were moved.
+        ``later``: once the sketch that is being opened is drawn.
         """
         if later:
-            self._next, self._next_views = (dict(steps), shown), dict(views or {})
+            self._next, self._next_kept = (dict(steps), shown), (dict(views or {}), dict(places or {}))
             return
-        if views is not None:
-            self.views = dict(views)
+        self.views = dict(views) if views is not None else self.views
+        self.places = dict(places) if places is not None else self.places
         self.steps.clear()
         self.steps.update(steps)
         self.map = shown
@@ -73,7 +79,8 @@ class View:
         (steps, shown), self._next = self._next, None
         self.muted = frozenset()
         self.look, self.turning, self.turned = None, False, 0.0
-        self.restore(steps, shown, views=self._next_views)
+        views, places = self._next_kept
+        self.restore(steps, shown, views=views, places=places)
         return True
 
     def forget_next(self) -> None:
