@@ -162,7 +162,7 @@ def nearest_pin(pins: Mapping[Pin, ImVec2], mouse: ImVec2, reach: float) -> Pin 
 
 def node_at(wiring: Wiring, canvas: Canvas, mouse: ImVec2) -> str:
     """Return the node under the mouse; "" for none."""
-    for node in reversed(list(wiring.refs)):  # the one on top first
+    for node in reversed(wiring.stacked):
         x, y = corner_of(wiring, node)
         low, far = canvas.place(x, y), canvas.place(x + WIDE, y + HIGH)
         if low.x <= mouse.x < far.x and low.y <= mouse.y < far.y:

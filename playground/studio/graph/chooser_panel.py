@@ -52,7 +52,7 @@ def draw_chooser(bench: Workbench, wiring: Wiring, look: Theme) -> None:
         chooser.is_open = False
         on = (chooser.on.reader, chooser.on.input) if chooser.on is not None else None
         name = bench.passes.add(chosen.use, chooser.after, chooser.output, between=not chooser.output, on=on)
-        graph.chosen = name or graph.chosen
+        graph.chosen, graph.wire = name or graph.chosen, None
         graph.has_keys = True
     imgui.end_popup()
 

@@ -49,6 +49,7 @@ class Wiring:
     layout: Layout
     inputs: Mapping[str, tuple[str, ...]]  # the pins at each node's left
     outputs: Mapping[str, tuple[str, ...]]  # and at its right, the main one first
+    above: tuple[str, ...] = ()  # nodes that were moved, and lie over the others; the last on top
 
     @property
     def edges(self) -> tuple[Edge, ...]:
@@ -64,8 +65,14 @@ class Wiring:
 
     def moved(self, places: Mapping[str, Place]) -> Wiring:
         """Return the graph with some nodes elsewhere."""
-        layout = self.layout.moved(places)
-        return self if layout is self.layout else replace(self, layout=layout)
+        above = tuple(node for node in places if node in self.refs)
+        others = tuple(node for node in self.above if node not in above)
+        return replace(self, layout=self.layout.moved(places), above=others + above) if above else self
+
+    @property
+    def stacked(self) -> list[str]:
+        """The nodes from the lowest to the one on top."""
+        return [*(node for node in self.refs if node not in self.above), *self.above]
 
 
 def wiring_of(sketch: Sketch, inside: str | None = None) -> Wiring:

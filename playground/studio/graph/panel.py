@@ -56,6 +56,7 @@ _NEAR = 8.0  # [units] that the mouse may be away from a pin or a wire
 _PLUS = 9.0  # [units] radius of the + on a wire
 _NUDGE = {(-1, 0): (-0.25, 0.0), (1, 0): (0.25, 0.0), (0, -1): (0.0, -0.5), (0, 1): (0.0, 0.5)}
 _F = imgui.ButtonFlags_
+_DRAGS = imgui.HoveredFlags_.allow_when_blocked_by_active_item
 
 
 def passes_tab(bench: Workbench) -> Tab:
@@ -74,6 +75,10 @@ class _Node:
     is_hovered: bool
     is_muted: bool
     is_shown: bool
+
+
+_Line = tuple[Wire, tuple[list[Span], list[Span]]]
+"""A wire, and where it runs."""
 
 
 @dataclass
@@ -121,10 +126,14 @@ class GraphPanel:
         self._ground(canvas, wiring)
         wiring = self._drag_on(wiring, canvas)
         pins = pins_of(wiring, canvas)
-        lit = self._wires(wiring, canvas, pins)
-        dragged = self._drag.node if self._drag is not None else ""
-        for node in sorted(wiring.refs, key=lambda node: node == dragged):
+        lines = [(wire, wire_spans(wire, wiring, canvas, pins)) for wire in wiring.wires]
+        lit = self._wire_under_mouse(lines, wiring, canvas)
+        target = self._drag.target if self._drag is not None else None
+        above = [ln for ln in lines if ln[0] is target or {ln[0].giver, ln[0].reader} & {*wiring.above}]
+        self._draw_wires([line for line in lines if line not in above], lit, canvas)
+        for node in wiring.stacked:
             self._draw_node(node, wiring, canvas, look)
+        self._draw_wires(above, lit, canvas)  # nothing goes around a node that was moved
         if graph.inside is None:
             self._pull(wiring, canvas, pins)
             self._plus(lit, wiring, canvas, pins, look)
@@ -170,24 +179,24 @@ class GraphPanel:
             graph.timed = timed
         imgui.same_line()
         imgui.align_text_to_frame_padding()
+        more = ""
         if graph.pulled is not None and graph.pulled.by_keys:
             words = tr(
                 "Wire from {name}: arrows choose a pass, Enter joins, Esc lets go", name=graph.pulled.giver
             )
         elif graph.has_keys:
-            words = tr(
-                "Arrows, Enter opens, + adds, W wires, Shift+arrows choose a wire, M mutes, S shows, Ctrl+D"
-                " duplicates, Del deletes, Ctrl+arrows: earlier, later, Ctrl+Shift+arrows move, T tidies"
+            words = tr("Arrows choose, Enter opens, + adds, Del deletes; right click: all")
+            more = tr(
+                "Shift+arrows choose a wire, W begins one, M mutes, S shows, Ctrl+D duplicates,"
+                " Ctrl+arrows: earlier and later in the file, Ctrl+Shift+arrows move, T tidies, Esc: leave"
             )
         else:
-            words = tr(
-                "Click: choose. Double click: open. Drag: move, onto a wire: between. From a pin: wire."
-                " Right click: all that can be done"
-            )
+            words = tr("Double click: open. Drag: move, or onto a wire. Right click: all")
+            more = tr("A click chooses; a drag from a pin to another wires, into the empty it adds a pass")
         room = imgui.get_content_region_avail().x
         imgui.text_disabled(fitting(words, room))
-        if fitting(words, room) != words:
-            imgui.set_item_tooltip(words)
+        if more or fitting(words, room) != words:
+            imgui.set_item_tooltip("\n".join(filter(None, [words, more])))
 
     def _canvas(self, corner: ImVec2, room: ImVec2, wiring: Wiring, scale: float) -> Canvas:
         if self._fits:
@@ -205,9 +214,7 @@ class GraphPanel:
         imgui.set_next_item_allow_overlap()
         imgui.invisible_button("canvas", canvas.room, _F.mouse_button_left | _F.mouse_button_middle)
         self._rests = imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip)
-        inside = canvas.holds(io.mouse_pos) and imgui.is_window_hovered(
-            imgui.HoveredFlags_.allow_when_blocked_by_active_item
-        )
+        inside = canvas.holds(io.mouse_pos) and imgui.is_window_hovered(_DRAGS)
         over = node_at(wiring, canvas, io.mouse_pos) if inside else ""
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
             self._fits = True
@@ -235,49 +242,42 @@ class GraphPanel:
 
     # ── wires ────────────────────────────────────────────────────────────────
 
-    def _wires(self, wiring: Wiring, canvas: Canvas, pins: Pins) -> Wire | None:
-        """Draw the wires; return the one under the mouse."""
-        mouse, near = imgui.get_mouse_pos(), None
-        hovers = canvas.holds(mouse) and imgui.is_window_hovered() and self.graph.pulled is None
-        over = node_at(wiring, canvas, mouse)
-        lines = [(wire, wire_spans(wire, wiring, canvas, pins)) for wire in wiring.wires]
-        drag = self._drag
-        if drag is None and hovers and not over and self.graph.inside is None:
-            near = _wire_at(lines, canvas, [mouse], _NEAR * canvas.scale * 0.7, round_plus=True)
-        if drag is not None and self.graph.inside is None:
+    def _wire_under_mouse(self, lines: list[_Line], wiring: Wiring, canvas: Canvas) -> Wire | None:
+        """Return the wire under the mouse; note the one under the node that is dragged."""
+        mouse, graph, drag = imgui.get_mouse_pos(), self.graph, self._drag
+        if graph.inside is not None or not canvas.holds(mouse) or not imgui.is_window_hovered(_DRAGS):
+            return None
+        if drag is not None:
             x, y = corner_of(wiring, drag.node)
             middle = canvas.place(x + WIDE / 2, y + HIGH / 2)
-            free = [(wire, spans) for wire, spans in lines if drag.node not in (wire.giver, wire.reader)]
-            drag.target = _wire_at(free, canvas, [mouse, middle], _NEAR * canvas.scale)
+            free = [line for line in lines if drag.node not in (line[0].giver, line[0].reader)]
+            drag.target = _wire_at(free, canvas, [mouse, middle], 2 * _NEAR * canvas.scale)
+            return None
+        if graph.pulled is not None or not imgui.is_window_hovered() or node_at(wiring, canvas, mouse):
+            return None
+        near = _wire_at(lines, canvas, [mouse], _NEAR * canvas.scale * 0.7, round_plus=True)
+        if near is not None and self._rests:
+            note = tr("found by its name") if not near.is_written else tr("Del takes it away")
+            imgui.set_tooltip(f"{_wire_name(near)}\n{note}")
+        return near
+
+    def _draw_wires(self, lines: list[_Line], lit: Wire | None, canvas: Canvas) -> None:
+        graph, drag, palette = self.graph, self._drag, theme.palette
         muted = self._bench.session.view.muted
         for wire, spans in lines:
-            chosen = self.graph.wire == (wire.reader, wire.input)
             is_target = drag is not None and wire is drag.target
-            touches = self.graph.chosen in (wire.giver, wire.reader) and bool(self.graph.chosen)
-            ink = (
-                theme.palette.accent
-                if wire is near or chosen or is_target
-                else theme.palette.ink
-                if touches
-                else theme.palette.dim
-            )
+            is_lit = wire is lit or is_target or graph.wire == (wire.reader, wire.input)
+            touches = graph.chosen in (wire.giver, wire.reader) and bool(graph.chosen)
+            ink = palette.accent if is_lit else palette.ink if touches else palette.dim
             if (
                 is_target
                 and drag is not None
                 and self._bench.passes.why_not(drag.node, wire.reader, wire.input)
             ):
-                ink = theme.palette.alarm
+                ink = palette.alarm
             alpha = 0.35 if {wire.giver, wire.reader} & muted else 0.9
-            thick = (
-                (3.0 if chosen or wire is near or is_target else 2.0)
-                * max(min(canvas.zoom, 1.2), 0.5)
-                * canvas.scale
-            )
+            thick = (3.0 if is_lit else 2.0) * max(min(canvas.zoom, 1.2), 0.5) * canvas.scale
             draw_wire(spans, canvas, theme.packed(ink, alpha), thick)
-        if near is not None and self._rests:
-            note = tr("found by its name") if not near.is_written else tr("Del takes it away")
-            imgui.set_tooltip(f"{_wire_name(near)}\n{note}")
-        return near
 
     def _plus(self, lit: Wire | None, wiring: Wiring, canvas: Canvas, pins: Pins, look: Theme) -> None:
         """Draw a + in the middle of the wire under the mouse, or of the one that is chosen."""
@@ -286,8 +286,8 @@ class GraphPanel:
         if wire is None or self._drag is not None or self.graph.pulled is not None:
             return
         middle, side = middle_of(wire_spans(wire, wiring, canvas, pins)), _PLUS * canvas.scale
-        imgui.set_cursor_screen_pos(ImVec2(middle.x - side, middle.y - side))
-        if imgui.invisible_button("+ wire", ImVec2(2 * side, 2 * side)):
+        low, far = ImVec2(middle.x - side, middle.y - side), ImVec2(middle.x + side, middle.y + side)
+        if _area("+ wire", low, far, canvas):
             self._ask_on(wire)
         palette, draw = theme.palette, imgui.get_window_draw_list()
         ground = palette.pressed if imgui.is_item_hovered() else palette.hover
@@ -337,9 +337,7 @@ class GraphPanel:
     def _pull(self, wiring: Wiring, canvas: Canvas, pins: Pins) -> None:
         """Draw the wire that is pulled from an output, and join or ask where it is let go."""
         graph, mouse = self.graph, imgui.get_mouse_pos()
-        hovers = canvas.holds(mouse) and imgui.is_window_hovered(
-            imgui.HoveredFlags_.allow_when_blocked_by_active_item
-        )
+        hovers = canvas.holds(mouse) and imgui.is_window_hovered(_DRAGS)
         out = nearest_pin(pins.outputs, mouse, _NEAR * canvas.scale) if hovers else None
         if graph.pulled is None:
             if out is not None and imgui.is_mouse_clicked(0):
@@ -394,6 +392,7 @@ class GraphPanel:
         wired = {(wire.reader, wire.input) for wire in wiring.wires}
         radius = max(min(canvas.k, 1.3 * canvas.scale), 0.5 * canvas.scale)
         hovers = canvas.holds(mouse) and imgui.is_window_hovered() and self.graph.inside is None
+        hovers = hovers and self._drag is None
         lit = nearest_pin(pins.outputs, mouse, _NEAR * canvas.scale) if hovers else None
         lit_in = nearest_pin(pins.inputs, mouse, _NEAR * canvas.scale) if hovers and lit is None else None
         for pin, point in pins.inputs.items():
@@ -440,10 +439,9 @@ class GraphPanel:
             is_muted=name.partition(".")[0] in session.view.muted,
             is_shown=shown,
         )
-        imgui.set_cursor_screen_pos(ImVec2(low.x + 6 * k, low.y))
         imgui.set_next_item_allow_overlap()
-        imgui.invisible_button(f"node {name}", ImVec2(max(far.x - low.x - 12 * k, 1), max(far.y - low.y, 1)))
-        if imgui.is_item_hovered() and graph.pulled is None:
+        _area(f"node {name}", ImVec2(low.x + 6 * k, low.y), ImVec2(far.x - 6 * k, far.y), canvas)
+        if imgui.is_item_hovered() and graph.pulled is None and self._drag is None:
             if imgui.is_mouse_double_clicked(0):
                 self._open(name)
             if imgui.is_mouse_clicked(1):
@@ -525,8 +523,7 @@ class GraphPanel:
         for number, (sign, is_lit, note, act) in enumerate(row):
             x, y = node.at[0] + WIDE - 8 - (3 - number) * (side + 3), node.at[1] + 23
             low, far = canvas.place(x, y), canvas.place(x + side, y + side)
-            imgui.set_cursor_screen_pos(low)  # away from the node's middle, where one clicks on it
-            clicked = imgui.invisible_button(f"{sign} {node.name}", ImVec2(far.x - low.x, far.y - low.y))
+            clicked = _area(f"{sign} {node.name}", low, far, canvas)
             hovered = imgui.is_item_hovered()
             if hovered:
                 imgui.set_tooltip(note)
@@ -767,7 +764,12 @@ def _wire_name(wire: Wire) -> str:
     return f"{source} → {wire.reader}.{wire.input}"
 
 
-_Line = tuple[Wire, tuple[list[Span], list[Span]]]
+def _area(name: str, low: ImVec2, far: ImVec2, canvas: Canvas) -> bool:
+    """Take clicks between two corners, as far as that is in the pane; return whether there was one."""
+    x, y, corner = max(low.x, canvas.corner.x), max(low.y, canvas.corner.y), canvas.corner
+    right, bottom = min(far.x, corner.x + canvas.room.x), min(far.y, corner.y + canvas.room.y)
+    imgui.set_cursor_screen_pos(ImVec2(min(x, right - 1), min(y, bottom - 1)))
+    return bool(imgui.invisible_button(name, ImVec2(max(right - x, 1), max(bottom - y, 1))))
 
 
 def _wire_at(
