@@ -13,7 +13,7 @@
 #include "noise/hash.glsl"
 #include "noise/periodic.glsl"
 #include "terrain/heightfield.glsl"
-#pragma kernel(output = "hardness:r32f")
+#pragma kernel(output = "hardness:r32f", relief = "true")
 
 uniform sampler2D height;  //! input
 

@@ -52,7 +52,7 @@
                uncertain_height:float:room * (size.x + size.y + 64) * words; \
                lines:uvec4:2 * room * (texels // 8)", \
     overwrites = "sky, land, hull, uncertain, uncertain_height, lines", aligned = "4", \
-    agrees = "ahead, behind: 0.05 degrees rms; sky: 0.002 rms; exact")
+    agrees = "ahead, behind: 0.05 degrees rms; sky: 0.002 rms; exact", relief = "shown")
 
 uniform sampler2D height;  //! input
 #include "lighting/parameters/directions.glsl"

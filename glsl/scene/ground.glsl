@@ -11,7 +11,7 @@
 // Its levels of detail are right means: slopes are, where those of normals would be too short.
 #include "terrain/heightfield.glsl"
 #include "terrain/maps.glsl"
-#pragma kernel(output = "ground:rgba16f")
+#pragma kernel(output = "ground:rgba16f", relief = "shown")
 
 uniform sampler2D height;      //! input
 uniform sampler2D visibility;  //! input("white")

@@ -9,7 +9,7 @@
 // Level ground is (0.5, 0.5, 1), a light blue: such maps are blue wherever slopes are gentle.
 #include "lighting/sun.glsl"
 #include "maths/land.glsl"
-#pragma kernel(output = "colour:rgba16f")
+#pragma kernel(output = "colour:rgba16f", relief = "shown")
 
 uniform sampler2D slope;  //! input
 

@@ -12,7 +12,7 @@
 // and thins them by their distance from the eye (trees/level.glsl), not evenly.
 #include "noise/hash.glsl"
 #include "terrain/heightfield.glsl"
-#pragma kernel(output = "picture:rgba16f, crown:r32f")
+#pragma kernel(output = "picture:rgba16f, crown:r32f", relief = "shown")
 
 uniform sampler2D height;    //! input
 uniform sampler2D density;   //! input("white")

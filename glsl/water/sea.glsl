@@ -8,7 +8,7 @@
 //
 // All its texels are the same, so one is enough: `size = 1`.
 #include "water/sheet_reading.glsl"
-#pragma kernel(output = "water:rgba32f")
+#pragma kernel(output = "water:rgba32f", level = "sea_level")
 
 uniform float sea_level = 0.0;  //! slider(-500, 9000) step(0.1) unit("m") Height of its surface,
                                 //! as elevations are counted

@@ -21,7 +21,7 @@
 #include "terrain/maps.glsl"
 #include "water/sheet_reading.glsl"
 #include "water/texels.glsl"
-#pragma kernel(output = "water:rgba32f")
+#pragma kernel(output = "water:rgba32f", level = "sea_level")
 
 uniform sampler2D height;    //! input
 uniform sampler2D depth;     //! input("zero")

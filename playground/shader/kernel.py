@@ -24,7 +24,7 @@ from playground.memo import PickledByFields
 from playground.shader import expressions
 from playground.shader.expressions import CLOCKS, COUNTERS, ExpressionError
 from playground.shader.parameter import AS_IT_IS, Parameter, Sampling
-from playground.shader.reserved_names import GIVEN, OF_THE_TERRAIN, PLAIN_UNIFORMS
+from playground.shader.reserved_names import GIVEN, OF_THE_TERRAIN, PLAIN_UNIFORMS, TOWARDS
 from playground.shader.source import Line, SourceText
 from playground.shader.widgets import Value
 
@@ -180,6 +180,13 @@ def read_samples(name: str, text: str, scope: Scope) -> int:
     if text not in ("0", "1"):
         raise ValueError(f"{name} = {text}: expected 1, or 0 for as many as the view has")
     return int(text)
+
+
+def read_level(name: str, text: str, scope: Scope) -> str:
+    """Return the name of a parameter that is a number."""
+    if text not in scope.numbers:
+        raise ValueError(f"{name}: there is no number '{text}'{nearest(text, scope.numbers)}")
+    return text
 
 
 def read_input(name: str, text: str, scope: Scope) -> str:
@@ -500,8 +507,57 @@ class Kernel(PickledByFields):
         return tuple(i.name for i in self.inputs if not i.fallback)
 
 
+def _check_relief(kernel: TerrainKernel) -> str:
+    if kernel.relief and not any(name in kernel.source.names for name in _METRES):
+        return f"relief says which metres the text is given, but it names neither {' nor '.join(_METRES)}"
+    return ""
+
+
+def _check_level(kernel: TerrainKernel) -> str:
+    if kernel.level and kernel.relief == "true":
+        return 'level is for a kernel that shows the land; take relief = "true" out'
+    if kernel.level and "base_elevation" not in kernel.source.names:
+        return "level says which parameter is an elevation, but the text never names base_elevation"
+    return ""
+
+
+_METRES = ("relief", "base_elevation")
+_CAMERA = ("clip_from_world", "world_from_clip", "eye")
+
+
 @dataclass(frozen=True)
-class TexelKernel(Kernel):
+class TerrainKernel(Kernel):
+    """A kernel that is given the terrain's metres: the true ones, or those that a window shows."""
+
+    relief: str = choice(
+        "which metres it is given where a window exaggerates the land: what draws or lights it those that "
+        "are `shown`, what computes heights, water or materials the `true` ones; without, a draw is given "
+        "those that are shown, and so is a text that names the camera or what is towards a direction",
+        "",
+        ("shown", "true"),
+        check=_check_relief,
+        keyed=False,
+        compared=False,
+    )
+    level: str = option(
+        "the parameter that is an elevation in metres, as a sea's: exaggerated, it keeps its shore",
+        parse=read_level,
+        check=_check_level,
+        keyed=False,
+        compared=False,
+    )
+
+    @cached_property
+    def shows_relief(self) -> bool:
+        """Whether it draws or lights the terrain, and so is given an exaggerated one where that is shown."""
+        if self.relief or self.level:
+            return self.relief != "true"
+        directions = (p.name for p in self.parameters if p.widget.kind == "direction")
+        return any(self.reads(name) for name in (*_CAMERA, *(f"{TOWARDS}{name}" for name in directions)))
+
+
+@dataclass(frozen=True)
+class TexelKernel(TerrainKernel):
     """A kernel: a function that computes one texel, run by either driver."""
 
     repeat: str = expression(_REPEAT, "1", names=CLOCKS, keyed=False)
@@ -583,7 +639,7 @@ class TexelKernel(Kernel):
 
 
 @dataclass(frozen=True)
-class Draw(Kernel):
+class Draw(TerrainKernel):
     """A draw of a mesh: a vertex and a fragment function."""
 
     mesh: str = option(
@@ -620,6 +676,11 @@ class Draw(Kernel):
     kind = "draw"
     example = '(mesh = "grid")'
     replaced = (WHERE, replace(OUTPUT, default="frame:rgba16f", required=""))
+
+    @property
+    def shows_relief(self) -> bool:
+        """Whether it is given an exaggerated terrain where that is shown."""
+        return self.relief != "true"
 
 
 @dataclass(frozen=True)
@@ -687,7 +748,7 @@ class Storage:
 
 
 @dataclass(frozen=True)
-class ComputeVariant(Kernel):
+class ComputeVariant(TerrainKernel):
     """A compute shader that takes the place of a technique: one of its fast variants."""
 
     repeat: str = expression(_REPEAT, "1")

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from playground.engine.camera import look, pan
 from playground.engine.engine import Engine
-from playground.paths import SKETCHES
+from playground.engine.exaggeration import LARGEST, exaggeration
+from playground.paths import GLSL, SKETCHES
+from playground.shader.kernel import TerrainKernel
 from playground.sketch.load import load
-from playground.sketch.map_sketch import map_kernel
-from playground.sketch.model import Camera
-from playground.sketch.techniques import name_of
-from playground.studio.land.exaggerated import LARGEST, exaggeration
+from playground.sketch.model import Camera, Kernel, kernels_of
+from playground.sketch.techniques import name_of, read_technique
 from playground.studio.picture.view import View
 from playground.studio.session import Session
 
@@ -35,6 +35,15 @@ FILES = {
 uniform sampler2D height; //! input
 float kernel(ivec2 texel) { return relief; }
 """,
+    "prepares.glsl": """#pragma kernel(output = "prepared:r32f", relief = "shown")
+uniform sampler2D height; //! input
+float kernel(ivec2 texel) { return relief; }
+""",
+    "dips.glsl": """#pragma kernel(output = "dips:r32f", relief = "true")
+uniform sampler2D height; //! input
+uniform vec2 dip = vec2(90.0, 45.0); //! direction
+float kernel(ivec2 texel) { return relief + 0.0 * towards_dip.z; }
+""",
     "lit.glsl": """#pragma kernel(output = "lit:r32f")
 uniform sampler2D height; //! input
 uniform vec2 sun = vec2(90.0, 45.0); //! direction
@@ -47,6 +56,8 @@ float kernel(ivec2 texel) { return relief * towards_sun.z; }
         lines=use("view/contours", interval=1.0),
         rise="./own",
         lit="./lit",
+        prepared="./prepares",
+        dips="./dips",
     )
     + SMALL_VIEW,
     "on_wall.toml": HEAD
@@ -112,6 +123,22 @@ def test_a_kernel_of_ones_own_follows_if_light_has_a_direction(
     session.exaggerate(2.0)
     assert read(session, "rise:rise")[0, 0] == RELIEF
     assert read(session, "lit:lit")[0, 0] == pytest.approx(2 * RELIEF * math.sin(math.radians(45.0)))
+    assert read(session, "prepared:prepared")[0, 0] == 2 * RELIEF
+    assert read(session, "dips:dips")[0, 0] == RELIEF
+
+
+def test_a_fast_variant_is_given_the_relief_of_its_kernel() -> None:
+    for path in sorted(GLSL.rglob("*.comp")):
+        canonical = read_technique(name_of(path), GLSL, GLSL)
+        kernels = [kernel for _, kernel in kernels_of(canonical) if kernel.reads("relief")]
+        for variant in canonical.variants:
+            for _, fast in kernels_of(variant.technique):
+                if fast.reads("relief"):
+                    assert {shows(fast)} == {shows(k) for k in kernels}, path
+
+
+def shows(kernel: Kernel) -> bool:
+    return isinstance(kernel, TerrainKernel) and kernel.shows_relief
 
 
 @pytest.mark.parametrize("factor", [1.0, 2.5])
@@ -131,7 +158,8 @@ def test_the_eye_goes_on_looking_at_the_same_place(factor: float) -> None:
 def test_the_sea_stays_at_its_shore() -> None:
     given = exaggeration(2.0)
     assert given is not None
-    draw = map_kernel()
+    draw = read_technique("view/sea", GLSL, GLSL)
+    assert isinstance(draw, Kernel)
     terrain = {"relief": 800.0, "base_elevation": 200.0}
     replaced = given.given(draw, {"sea_level": 320.0}, terrain)
     shore = (320.0 - 200.0) / 800.0  # the height of the shore

@@ -15,7 +15,7 @@
 #include "lighting/horizons/open_sky.glsl"
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"
-#pragma kernel(output = "factor:rgba16f, k:r32f")
+#pragma kernel(output = "factor:rgba16f, k:r32f", relief = "shown")
 
 uniform sampler2D height;     //! input
 #include "lighting/parameters/eight_horizons.glsl"

@@ -18,7 +18,7 @@
 #include "lighting/horizons/open_sky.glsl"
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"
-#pragma kernel(output = "upright:rgba16, slanting:rgba16, facing:rg8")
+#pragma kernel(output = "upright:rgba16, slanting:rgba16, facing:rg8", relief = "shown")
 
 uniform sampler2D height;     //! input
 #include "lighting/parameters/eight_horizons.glsl"

@@ -27,7 +27,7 @@
 #include "lighting/horizons/slope.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "ahead:rgba16f, behind:rgba16f, sky:r32f, land:r32f", \
-               repeat = "max(directions // 8 * 4, 4 if keep else 1)")
+               repeat = "max(directions // 8 * 4, 4 if keep else 1)", relief = "shown")
 
 uniform sampler2D height;               //! input
 uniform sampler2D range;                //! input

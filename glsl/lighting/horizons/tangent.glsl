@@ -10,7 +10,7 @@
 // One of the horizons that lighting/horizons keeps for all directions.
 #include "lighting/march.glsl"
 #include "maths/angle.glsl"
-#pragma kernel(output = "tangent:r32f")
+#pragma kernel(output = "tangent:r32f", relief = "shown")
 
 uniform sampler2D height;       //! input
 uniform float azimuth = 270.0;  //! angle(0, 360) The direction looked in, clockwise from north

@@ -12,7 +12,7 @@
 // its gain at `max_distance`; with the soft one the light ends there.
 #include "lighting/march.glsl"
 #include "lighting/sun.glsl"
-#pragma kernel(output = "light:rgba16f")
+#pragma kernel(output = "light:rgba16f", relief = "shown")
 
 uniform sampler2D height;        //! input
 uniform sampler2D moonlit;       //! input

@@ -18,7 +18,7 @@
 #include "lighting/horizons/open_sky.glsl"
 #include "maths/angle.glsl"
 #include "terrain/heightfield.glsl"
-#pragma kernel(output = "low:rgba16f, high:rgba16f")
+#pragma kernel(output = "low:rgba16f, high:rgba16f", relief = "shown")
 
 uniform sampler2D height;     //! input
 uniform sampler2D ahead;      //! input

@@ -10,6 +10,7 @@ from typing import Protocol
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.engine.exaggeration import LARGEST
 from playground.sketch.model import Sketch
 from playground.studio import theme
 from playground.studio.draw import (
@@ -27,7 +28,6 @@ from playground.studio.draw import (
     styled,
 )
 from playground.studio.interface import Preferences
-from playground.studio.land.exaggerated import LARGEST
 from playground.studio.land.land import (
     METRES_IN,
     VIEWS,

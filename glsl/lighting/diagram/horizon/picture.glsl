@@ -15,7 +15,7 @@
 #include "lighting/diagram/paints.glsl"
 #include "lighting/diagram/section.glsl"
 #include "maths/land.glsl"
-#pragma kernel(output = "diagram:rgba16f")
+#pragma kernel(output = "diagram:rgba16f", relief = "true")
 
 uniform sampler2D height;       //! input
 uniform sampler2D angles;       //! input
