@@ -34,6 +34,7 @@ from playground.studio.clock import Clock
 from playground.studio.edits.drafts import Drafts
 from playground.studio.edits.edits import Draft, StoredEdits
 from playground.studio.language import tr
+from playground.studio.land.looks import Appearance
 from playground.studio.picture.gestures import turned_sun
 from playground.studio.picture.shown_picture import CatchUp, ShownPicture
 from playground.studio.picture.view import Place, View, fitted, in_view, steps_of_repeats
@@ -321,9 +322,14 @@ class Session:
     def exaggerate(self, factor: float) -> None:
         """Show the terrain so many times higher than it is."""
         if factor != self.exaggeration:
-            self.engine.runner.exaggeration = exaggeration(factor)
-            self.view.exaggeration = self.exaggeration
+            self.view.exaggeration = factor
+            self._take_exaggeration()
             self.redraw()
+
+    def _take_exaggeration(self) -> None:
+        """Have the engine draw the terrain as high as the view has it."""
+        self.engine.runner.exaggeration = exaggeration(self.view.exaggeration)
+        self.view.exaggeration = self.exaggeration
 
     def move_suns(self, across: float, up: float) -> None:
         """Drag the suns of what is seen, those of the sketch or a look's own; see ``turned_sun``."""
@@ -370,9 +376,12 @@ class Session:
         shown: Map | None,
         views: Mapping[int, Camera] | None = None,
         places: Mapping[str, Place] | None = None,
+        appearance: Appearance | None = None,
     ) -> None:
         """Stop repeats and show a map, as ``View.restore``; of a sketch being opened, once that is drawn."""
-        self.view.restore(steps, shown, views=views, places=places, later=self.drafts.opening)
+        later = self.drafts.opening
+        self.view.restore(steps, shown, views=views, places=places, appearance=appearance, later=later)
+        self._take_exaggeration()
 
     def stop_at(self, path: str, step: int) -> None:
         """Show a repeated pass after so many steps; after its last, it runs to its end again."""
@@ -515,7 +524,7 @@ class Session:
             self.before_switch()
         exaggeration_before = self.exaggeration
         if self.view.take_next():
-            self.exaggerate(1.0)
+            self._take_exaggeration()
         self.last_reload = Reload(self._now() - drafts.started, drafts.sandbox_seconds)
         drafts.drawn_well()
         is_other = bool(self.view.map is not None or self.view.look is not None or self.view.muted)

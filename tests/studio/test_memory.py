@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import os
+import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +22,7 @@ from playground.studio.edits.autosave import QUIET, TIME, Autosave
 from playground.studio.edits.edits import Edits, FileValue
 from playground.studio.edits.memory import Compared, Memory, Remembered
 from playground.studio.land.land import keep_view, recall_view
+from playground.studio.land.looks import Appearance, Look, look_of
 from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 
@@ -60,6 +62,7 @@ FULL = Remembered(
         16.0,
     ),
     ((1, Camera(azimuth=180.0, elevation=89.0)), (3, Camera(target=(1.0, 2.0, 3.0)))),
+    Appearance(2.5, Look("clay", "height:height", (("sunlight.sun", (120.0, 30.0)),))),
 )
 
 
@@ -83,6 +86,12 @@ class Place:
         self.open.append(made)
         session.frame(SIZE)
         return made
+
+    def other(self) -> Path:
+        """Return another sketch, of the same texts."""
+        path = self.sketch.parent / "other"
+        shutil.copytree(self.sketch, path)
+        return path
 
     def files(self) -> list[str]:
         return sorted(p.name for p in self.state.glob("*.json"))
@@ -125,10 +134,11 @@ def test_a_file_of_before_there_was_more_to_remember_is_read(tmp_path: Path) -> 
     memory = Memory(tmp_path / "sketch.toml", tmp_path)
     memory.write(FULL)
     table = json.loads(memory.path.read_text(encoding="utf-8"))
-    for name in ("at", "camera_in_file", "loop", "compared", "views"):
+    for name in ("at", "camera_in_file", "loop", "compared", "views", "appearance"):
         del table[name]
     memory.path.write_text(json.dumps(table), encoding="utf-8")
     expected = replace(FULL, at=None, camera_in_file=None, loop=None, compared=None, views=())
+    expected = replace(expected, appearance=Appearance())
     assert memory.read() == (expected, "")
 
 
@@ -199,6 +209,27 @@ def test_numbered_views_come_back_with_their_sketch(place: Place) -> None:
     picture(again)
     assert recall_view(again, 2) and again.sketch.camera == kept
     assert not recall_view(again, 1)
+
+
+def test_exaggeration_and_look_come_back_with_their_sketch(place: Place) -> None:
+    session, autosave = place.start()
+    assert session.frame(SIZE) is not None
+    session.exaggerate(2.0)
+    session.view.show_as(look_of("slope", session.plan))
+    shown = session.view.appearance
+    autosave.look((640, 480))
+    autosave.close()
+    again, autosave = place.start()
+    assert again.frame(SIZE) is not None, again.error
+    assert again.view.appearance == shown and again.exaggeration == 2.0 and shown.look is not None
+    assert again.plan is not None and again.plan.exaggeration == 2.0
+    autosave.look((640, 480))
+    autosave.open(place.other())
+    autosave.look((640, 480))
+    assert again.frame(SIZE) is not None and again.view.appearance == Appearance()
+    autosave.look((640, 480))
+    autosave.open(place.sketch)
+    assert again.frame(SIZE) is not None and again.view.appearance == shown
 
 
 def test_it_is_written_as_one_goes_once_it_rests(place: Place) -> None:
@@ -337,7 +368,19 @@ def test_a_broken_file_is_set_aside_and_that_is_reported(place: Place, name: str
 
 
 @each(
-    "key", ["edits", "in_file", "camera_in_file", "compared", "steps", "window", "at", "map_values", "time"]
+    "key",
+    [
+        "edits",
+        "in_file",
+        "camera_in_file",
+        "compared",
+        "steps",
+        "window",
+        "at",
+        "map_values",
+        "time",
+        "appearance",
+    ],
 )
 @each("wrong", [7, "x", [1], {"a": 1}, [[]], float("inf")])
 def test_no_value_of_another_kind_is_taken_or_raises(tmp_path: Path, key: str, wrong: object) -> None:

@@ -169,6 +169,7 @@ class Autosave:
             Map(remembered.map, remembered.map_values) if remembered.map else None,
             dict(remembered.views),
             dict(remembered.places),
+            remembered.appearance,
         )
 
     def _drawn_of(self, draft: Draft) -> dict[str, Any]:
@@ -188,6 +189,7 @@ class Autosave:
             "steps": tuple(sorted(view.steps.items())),
             "views": tuple(sorted(view.views.items())),
             "places": tuple(sorted(view.places.items())),
+            "appearance": view.appearance,
         }
 
     def _snapshot(self, draft: Draft, window: tuple[int, int], at: tuple[int, int] | None) -> Remembered:

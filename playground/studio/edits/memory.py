@@ -26,6 +26,7 @@ from playground.json_text import read_json
 from playground.sketch.model import Camera, Value
 from playground.studio.edits.edits import Edits, FileValue, StoredEdits
 from playground.studio.language import tr
+from playground.studio.land.looks import Appearance
 
 
 def set_aside(path: Path, what: str, error: Exception) -> str:
@@ -77,6 +78,7 @@ class Remembered:
     compared: Compared | None = None
     views: tuple[tuple[int, Camera], ...] = ()  # numbered ones that are kept
     places: tuple[tuple[str, tuple[float, float]], ...] = ()  # of the graph's nodes that were moved
+    appearance: Appearance = field(default_factory=Appearance)  # of the terrain
 
     @property
     def start(self) -> StoredEdits:

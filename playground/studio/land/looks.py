@@ -50,6 +50,11 @@ class Look:
     height: str  # "pass[.inner…]:output"
     values: tuple[tuple[str, Value], ...] = ()  # of its parameters, by path inside
 
+    def __post_init__(self) -> None:
+        """Raise ``ValueError`` for a name that is none."""
+        if self.name not in LOOKS[1:]:
+            raise ValueError(f"there is no look {self.name!r}")
+
     def of(self, sketch: Sketch) -> Sketch:
         """Return the sketch in this look: of the same graph always the same one."""
         overrides = tuple(v for v in sketch.overrides if not v[0].startswith("view."))
@@ -72,6 +77,14 @@ class Look:
     def fits(self, sketch: Sketch) -> bool:
         """Return whether the sketch has the heights."""
         return sketch.graph.find(self.height.partition(":")[0].partition(".")[0]) is not None
+
+
+@dataclass(frozen=True)
+class Appearance:
+    """How a terrain is shown where that is not as its sketch says."""
+
+    exaggeration: float = 1.0  # how many times higher than it is
+    look: Look | None = None
 
 
 def look_of(name: str, plan: Plan | None) -> Look | None:

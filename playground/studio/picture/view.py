@@ -19,7 +19,7 @@ from playground.errors import PlaygroundError
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import DEFAULT_PICTURE, Camera, Graph, Sketch, Technique, Value
 from playground.sketch.wiring import output_names
-from playground.studio.land.looks import Look
+from playground.studio.land.looks import Appearance, Look
 
 Place = tuple[float, float]
 """Of a node of the graph: column from the left, and its middle downwards, in heights of a node."""
@@ -37,7 +37,7 @@ class View:
         self.interpolated = True  # what a stopped repeat has not reached is filled
         self.views: dict[int, Camera] = {}  # kept, by number
         self.places: dict[str, Place] = {}  # of nodes of the graph that were moved
-        self._next_kept: tuple[dict[int, Camera], dict[str, Place]] = {}, {}
+        self._next_kept: tuple[dict[int, Camera], dict[str, Place], Appearance] = {}, {}, Appearance()
         self.exaggeration = 1.0  # how many times higher than it is the terrain is shown
         self.turning = False  # the camera goes round, as on a turntable
         self.turned = 0.0  # [degrees] by which it has gone, for the picture alone
@@ -52,18 +52,22 @@ class View:
         *,
         views: Mapping[int, Camera] | None = None,
         places: Mapping[str, Place] | None = None,
+        appearance: Appearance | None = None,
         later: bool = False,
     ) -> None:
         """Stop repeats after so many steps, and show a map or, with None, the sketch's own view.
 
-        ``views``: the numbered ones that are kept. ``places``: of the graph's nodes that were moved.
-        ``later``: once the sketch that is being opened is drawn.
+        ``views``: the numbered ones that are kept; ``places``: of the graph's nodes that were moved;
+        ``appearance``: of the terrain. ``later``: once the sketch that is being opened is drawn.
         """
         if later:
-            self._next, self._next_kept = (dict(steps), shown), (dict(views or {}), dict(places or {}))
+            self._next = (dict(steps), shown)
+            self._next_kept = dict(views or {}), dict(places or {}), appearance or Appearance()
             return
         self.views = dict(views) if views is not None else self.views
         self.places = dict(places) if places is not None else self.places
+        if appearance is not None:
+            self.look, self.exaggeration = appearance.look, appearance.exaggeration
         self.steps.clear()
         self.steps.update(steps)
         self.map = shown
@@ -72,15 +76,15 @@ class View:
     def take_next(self) -> bool:
         """Show what was restored for the sketch that is drawn now for the first time, if any is.
 
-        Returns whether that is so; a look and a turntable were the one before's.
+        Returns whether that is so; a turntable was the one before's.
         """
         if self._next is None:
             return False
         (steps, shown), self._next = self._next, None
         self.muted = frozenset()
-        self.look, self.turning, self.turned = None, False, 0.0
-        views, places = self._next_kept
-        self.restore(steps, shown, views=views, places=places)
+        self.turning, self.turned = False, 0.0
+        views, places, appearance = self._next_kept
+        self.restore(steps, shown, views=views, places=places, appearance=appearance)
         return True
 
     def forget_next(self) -> None:
@@ -91,6 +95,11 @@ class View:
     def state(self) -> tuple[dict[str, int], Map | None]:
         """What ``restore`` takes to draw the sketch that is open so again, drawn already or not."""
         return self._next if self._next is not None else (dict(self.steps), self.map)
+
+    @property
+    def appearance(self) -> Appearance:
+        """How the terrain is shown, as ``restore`` takes it."""
+        return Appearance(self.exaggeration, self.look)
 
     def show(self, shown: Map | None) -> None:
         """Show a map or, with None, the sketch's own view."""
