@@ -93,6 +93,13 @@ class Workbench:
         """Open the strip at the passes, which get the keys, or close it."""
         self.inspection.graph.gets_keys = self.panes.toggle_strip("passes")
 
+    def toggle_code(self) -> None:
+        """Close the code pane, or open it and give it the keys."""
+        if self.panes.code_is_open:
+            self.panes.show_code(False)
+        elif self.files.current is not None:
+            self.files.focus(self.files.current, self.files.current.line, self.files.current.column)
+
     def follow_files(self) -> None:
         """Have the tabs of the code pane be those of the sketch that is shown."""
         drafts = self.session.drafts

@@ -166,7 +166,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.v, "V", "the versions, or no longer", lambda b: b.panes.toggle_strip("versions")),
     Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
     Key(_K.e, "E, Shift+E", _EDIT, lambda b: b.files.open_current(b.problems, here=not _shift_held())),
-    Key(_K.e, "Ctrl+E", "the code pane, or no longer", lambda b: _toggle_code(b), ctrl=True),
+    Key(_K.e, "Ctrl+E", "the code pane, or no longer", lambda b: b.toggle_code(), ctrl=True),
     Key(_K.z, "Ctrl+Z", "undo", lambda b: b.undo.undo(), ctrl=True),
     Key(_K.z, "Ctrl+Shift+Z", "redo", lambda b: b.undo.redo(), ctrl=True, shift=True),
     Key(_K.y, "Ctrl+Y", "redo", lambda b: b.undo.redo(), ctrl=True),
@@ -233,15 +233,6 @@ def _step(bench: Workbench) -> None:
 
 def _paste(bench: Workbench) -> None:
     bench.actions.paste(imgui.get_clipboard_text() or "")
-
-
-def _toggle_code(bench: Workbench) -> None:
-    """Close the code pane, or open it and give it the keys."""
-    if bench.panes.code_is_open:
-        bench.panes.show_code(False)
-    elif bench.files.current is not None:
-        current = bench.files.current
-        bench.files.focus(current, current.line, current.column)
 
 
 def _visit(bench: Workbench) -> None:

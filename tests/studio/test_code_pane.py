@@ -93,6 +93,14 @@ def test_the_sketch_and_its_kernels_have_tabs(pane: Pane) -> None:
     assert not unsaved(pane.bench.files.editing)
 
 
+def test_the_button_opens_and_closes_the_pane(pane: Pane) -> None:
+    pane.bench.panes.show_code(False)
+    pane.click("Code###code")
+    assert pane.bench.panes.code_is_open and typing(pane.bench.files) == ["terrain.glsl"]
+    pane.click("Code###code")
+    assert not pane.bench.panes.code_is_open
+
+
 def test_what_is_typed_is_drawn_and_not_saved(pane: Pane, folder: Path) -> None:
     file = folder / "terrain.glsl"
     pane.place(5, 17)

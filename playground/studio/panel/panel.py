@@ -199,8 +199,8 @@ def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
         imgui.same_line()
         if button("A/B", tr("Keep this as A, go on with B, and compare the two; or no longer (A)")):
             bench.inspection.compare.toggle()
-        _resets(bench.actions)
         imgui.same_line()
+        _resets(bench.actions)
         _copies(memory, bench.actions)
         imgui.same_line()
         _saves(memory, bench.actions)
@@ -215,6 +215,9 @@ def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
             tr("Trace"), tr("Every value of the texel under the mouse beside the code, or no longer (T)")
         ):
             bench.tracing.toggle()
+        imgui.same_line()
+        if button(f"{tr('Code')}###code", tr("The sketch's text beside the picture, or no longer (Ctrl+E)")):
+            bench.toggle_code()
 
 
 def draw_search(memory: PanelState, ahead: TypedAhead) -> None:
