@@ -309,6 +309,25 @@ def fitting_label(text: str, width: float) -> tuple[float, str]:
     return theme.SMALL, cut
 
 
+def first_lines(text: str, width: float, count: int, ending: str) -> tuple[list[str], bool]:
+    """Return the first lines of a text broken at a width, and whether there were more.
+
+    Then the last one leaves room for ``ending``, and itself ends with an ellipsis.
+    """
+    lines = [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".lstrip()
+        if imgui.calc_text_size(longer).x <= width or not lines[-1]:
+            lines[-1] = longer
+        elif len(lines) < count:
+            lines.append(word)
+        else:
+            while lines[-1] and imgui.calc_text_size(f"{lines[-1]}{ending}").x > width:
+                lines[-1] = lines[-1].rpartition(" ")[0]
+            return [*lines[:-1], f"{lines[-1].rstrip(' .,:;')}…"], True
+    return lines, False
+
+
 def fitting_choice(text: str) -> str:
     """Return the choice that a closed list shows, cut off so that it ends before the list's arrow."""
     style = imgui.get_style()

@@ -77,6 +77,7 @@ class Bare:
             (imgui, "input_double"),
             (imgui, "tree_node_ex"),
             (imgui, "collapsing_header"),
+            (imgui, "text_link"),
         ):
             self.watch(owner, name)
         self.clipboard = ""

@@ -1,6 +1,6 @@
 """The panel: what can be changed, made from the sketch's own annotations.
 
-From the top: title, undo, resets, time and presets; which texture is shown; a search; a
+From the top: title, what it is about, undo, resets, time and presets; which texture is shown; a search; a
 section a pass, with its technique and parameters; what each pass cost. What a
 technique exports comes first, what is inside is folded.
 """
@@ -27,6 +27,7 @@ from playground.studio.draw import (
     buttons,
     choose,
     disabled,
+    first_lines,
     fitting,
     fitting_choice,
     fitting_path,
@@ -48,6 +49,7 @@ from playground.studio.keyframes.panel import KeyframeList
 from playground.studio.keys import all_keys
 from playground.studio.language import counted, shortcut, tr, tr_label
 from playground.studio.paint.panel import draw_paintbox
+from playground.studio.panel.about import about
 from playground.studio.panel.parameter_list import Filter, PanelState, items_of, set_words, shown_values
 from playground.studio.panel.passes_panel import Sections
 from playground.studio.panel.randomise import at_random, mutated, targets
@@ -152,6 +154,7 @@ def _footer(lines: tuple[str, str], look: Theme) -> None:
 
 
 _CLOSER = 2.5  # [units of scale 1]
+_ABOUT_LINES = 2
 _LISTED = 14  # steps of the history that show without scrolling
 
 
@@ -178,10 +181,29 @@ def draw_head(memory: PanelState, bench: Workbench, look: Theme) -> None:
                 addition.toggle()
     if sketch is None:
         return
+    with look.font(look.text, theme.SMALL):
+        _about(memory, about(sketch), sketch.file)
     _buttons(memory, bench, look)
     if sketch.presets:
         _presets(sketch, memory, bench.actions)
     _shown_texture(session)
+
+
+def _about(memory: PanelState, paragraphs: list[str], file: str) -> None:
+    """Write what the sketch is about; of more than two lines the rest is folded."""
+    if not paragraphs:
+        return
+    wide, unfolded = imgui.get_content_region_avail().x, memory.unfolded == file
+    label = tr("less") if unfolded else tr("more")
+    lines, is_cut = first_lines(paragraphs[0], wide, _ABOUT_LINES, f"… {label}")
+    with wrapped():
+        for text in paragraphs if unfolded else lines:
+            imgui.text_disabled(text)
+    if unfolded or is_cut or len(paragraphs) > 1:
+        if not unfolded:
+            imgui.same_line(0, imgui.calc_text_size(" ").x)
+        if imgui.text_link(f"{label}###about"):
+            memory.unfolded = "" if unfolded else file
 
 
 def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:

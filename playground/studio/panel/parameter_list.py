@@ -234,3 +234,4 @@ class PanelState:
     everything: bool = False  # random values are for every parameter, not the shape's alone
     preset: str = ""  # the one last chosen
     preset_name: str = ""  # of one to be saved
+    unfolded: str = ""  # the file whose words on itself are shown whole
