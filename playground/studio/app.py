@@ -70,6 +70,7 @@ from playground.studio.problems.problems import TerminalErrors, Warnings, to_log
 from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.remote.remotes import Remotes
 from playground.studio.session import Session
+from playground.studio.settings_panel import draw_hints
 from playground.studio.start.panel import StartPanel
 from playground.studio.status import Status
 from playground.studio.trace.live import LiveTexelFile
@@ -457,9 +458,8 @@ class Live:
     def _draw_start_page(self) -> None:
         """Draw the rest of a frame while the start page fills the window: no sketch is drawn."""
         window, bench, guard = self.window, self.bench, self.guard
-        preferences = bench.interface.preferences
         guard.draw(
-            "the start page", lambda: self.start_panel.draw(bench.start, window.theme, preferences), None
+            "the start page", lambda: self.start_panel.draw(bench.start, window.theme, bench.interface), None
         )
         guard.draw("what a key asks for", lambda: act_on_keys(bench), None)
         if window.keys.waits:
@@ -553,6 +553,8 @@ class Live:
         self.guard.run("the texel for editors", self.live_texel.update, None)
         corner = bench.interface, bench.inspection, look, above
         draw("the frames a second", lambda: draw_readout(self.readout, *corner), None)
+        if picture is not None and not bench.problems.open:
+            draw("the hints", lambda: draw_hints(bench.interface.preferences, look, above), None)
         draw("the pinned texel", lambda: draw_mark(tracing, look, area), None)
         draw("the trace", lambda: self.trace_panel.draw(tracing, look, above), None)
         draw("the notices", lambda: draw_notices(bench.notices, look, area), None)

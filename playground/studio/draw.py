@@ -158,9 +158,9 @@ def choose(
 
 
 @contextmanager
-def menu(label: str, name: str, note: str) -> Iterator[bool]:
+def menu(label: str, name: str, note: str, *, small: bool = False) -> Iterator[bool]:
     """Draw a button that opens a popup; the block draws what is in it, where it is given True."""
-    if button(label, note):
+    if button(label, note, small=small):
         imgui.open_popup(name)
     opened = imgui.begin_popup(name)
     yield opened

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 SIZES = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
 """What the keys go through; 1 is as large as the screen says."""
 
+HINTS = {"O": "new, open, examples", "Ctrl+E": "code beside the picture", "?": "all keys"}
+"""What the line at the picture's bottom names until one has used it, key → what for."""
+
 FORMAT = 1
 _MAX_BYTES = 2**16  # [bytes]
 
@@ -41,12 +44,23 @@ class Preferences:
     is_in_feet: bool = False  # lengths of the terrain, else in metres
     panes: dict[str, float] = field(default_factory=dict)  # what ``Panes`` remembers, by name
     shows_readout: bool = True  # frames a second in the picture's corner
+    used_keys: tuple[str, ...] = ()  # of ``HINTS``
     file: Path | None = None  # None: nowhere
 
     def step(self, by: int) -> None:
         """Go to the next larger size, or with -1 to the next smaller one; at the ends it stays."""
         nearest = min(range(len(SIZES)), key=lambda at: abs(SIZES[at] - self.size))
         self.choose(size=SIZES[min(max(nearest + by, 0), len(SIZES) - 1)])
+
+    @property
+    def hints(self) -> list[str]:
+        """The keys of ``HINTS`` that have not been used yet."""
+        return [key for key in HINTS if key not in self.used_keys]
+
+    def use_key(self, name: str) -> None:
+        """Take a key out of the hints."""
+        if name in self.hints:
+            self.choose(used_keys=(*self.used_keys, name))
 
     def choose(self, **changes: object) -> None:
         """Set some of the fields, and remember them where that can be done."""
@@ -62,7 +76,7 @@ class Preferences:
             write_file(self.file, json.dumps({"format": FORMAT, **remembered}))
 
 
-_REMEMBERED = ("size", "is_light", "language", "is_in_feet", "panes", "shows_readout")
+_REMEMBERED = ("size", "is_light", "language", "is_in_feet", "panes", "shows_readout", "used_keys")
 
 
 def remembered_preferences(folder: Path | None = None) -> Preferences:
@@ -85,6 +99,8 @@ def remembered_preferences(folder: Path | None = None) -> Preferences:
     for name in ("is_light", "language", "is_in_feet", "shows_readout"):
         if isinstance(table.get(name), type(getattr(preferences, name))):
             setattr(preferences, name, table[name])
+    used = table.get("used_keys")
+    preferences.used_keys = tuple(key for key in HINTS if isinstance(used, list) and key in used)
     panes = table.get("panes")
     if isinstance(panes, dict):
         preferences.panes = {name: float(v) for name, v in panes.items() if isinstance(v, int | float)}
@@ -159,6 +175,7 @@ class Interface:
 
     panel_shown: bool = True
     keymap_shown: bool = False
+    settings_asked: bool = False  # the menu of settings is to open
     searching: bool = False  # the panel is to give its search the keys
     reveal: str = ""  # the pass that the panel is to scroll to
     preferences: Preferences = field(default_factory=Preferences)
@@ -175,6 +192,10 @@ class Interface:
     def search(self) -> None:
         """Show the panel, and give its search the keys."""
         self.panel_shown = self.searching = True
+
+    def ask_settings(self) -> None:
+        """Open the menu of the window's settings, in the panel where no start page is shown."""
+        self.panel_shown = self.settings_asked = True
 
     def toggle_keymap(self) -> None:
         """Show what every key does, or no longer."""

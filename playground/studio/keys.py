@@ -161,6 +161,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.none, "?", _HELP, lambda b: b.interface.toggle_keymap(), letter="?", brief="keys"),
     Key(_K.f1, "F1", _HELP, lambda b: b.interface.toggle_keymap()),
     Key(_K.f4, "F4", "frames a second in the corner, or no longer", lambda b: _toggle_readout(b)),
+    Key(_K.f10, "F10", "language, colours, size of text, panes", lambda b: b.interface.ask_settings()),
     Key(_K.f6, "F6, Shift+F6", "look at the version before, after", lambda b: _look(b)),
     Key(_K.f6, "Ctrl+F6", "go back to the version that is looked at", lambda b: _go_back(b), ctrl=True),
     Key(_K.v, "V", "the versions, or no longer", lambda b: b.panes.toggle_strip("versions")),
@@ -246,7 +247,7 @@ def _shift_held() -> bool:
 def act_on_keys(bench: Workbench) -> None:
     """Act on the keys pressed since the last frame, unless they belong to a text field or a menu.
 
-    Two belong to neither: Esc, unless it leaves the field itself, and what quits.
+    Three belong to neither: Esc, unless it leaves the field itself, F10, and what quits.
     """
     io = imgui.get_io()
     ctrl, shift = ctrl_held(), _shift_held()
@@ -257,9 +258,13 @@ def act_on_keys(bench: Workbench) -> None:
         if not left_a_field() and not close_smaller(bench.files):
             close_one(bench)
         return
+    if imgui.is_key_pressed(_K.f10, repeat=False):
+        bench.interface.ask_settings()
+        return
     if typing(bench.files) and ctrl and imgui.is_key_pressed(imgui.Key.e, repeat=False):
         bench.panes.show_code(False)
         give_back_keys(bench.files)
+        bench.interface.preferences.use_key("Ctrl+E")
         return
     if keeps_keys(bench.interface.ahead) or io.want_text_input or io.key_alt:
         return
@@ -283,6 +288,7 @@ def act_on_keys(bench: Workbench) -> None:
             pressed = fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key not in _ONCE)
         if pressed and (bench.painting.on or not key.brush):
             key.act(bench)
+            bench.interface.preferences.use_key(key.name)
 
 
 # ── the key map ───────────────────────────────────────────────────────────────

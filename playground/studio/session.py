@@ -33,8 +33,8 @@ from playground.sketch.traits import has_moving_counts, is_animated, traits_of
 from playground.studio.clock import Clock
 from playground.studio.edits.drafts import Drafts
 from playground.studio.edits.edits import Draft, StoredEdits
-from playground.studio.language import tr
 from playground.studio.land.looks import Appearance
+from playground.studio.language import tr
 from playground.studio.picture.gestures import turned_sun
 from playground.studio.picture.shown_picture import CatchUp, ShownPicture
 from playground.studio.picture.view import Place, View, fitted, in_view, steps_of_repeats

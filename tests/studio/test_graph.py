@@ -676,7 +676,9 @@ def test_arrows_follow_the_wires(chain: Bare) -> None:
 
 def test_a_node_opens_and_esc_leads_out(passes_bare: Bare) -> None:
     bare, graph, key = passes_bare, passes_bare.bench.inspection.graph, imgui.Key
-    bare.session.path.write_text(SKETCH.replace("./terrain", "generation/mixed").replace("[128, 32]", "33"), encoding="utf-8")
+    bare.session.path.write_text(
+        SKETCH.replace("./terrain", "generation/mixed").replace("[128, 32]", "33"), encoding="utf-8"
+    )
     bare.session.drafts.reload()
     bare.run_frames(10)
     graph.chosen = "height"

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import json
+import tomllib
+from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
 
 import pytest
+from imgui_bundle import imgui
 
 from playground.shader.colours import srgb_to_linear
-from playground.studio import theme
-from playground.studio.interface import Panes, Preferences, Tab, remembered_preferences
+from playground.studio import language, theme
+from playground.studio.draw import Area
+from playground.studio.interface import HINTS, Panes, Preferences, Tab, remembered_preferences
+from playground.studio.keys import all_keys
+from playground.studio.language import choose_language
 from playground.studio.panes import NARROW, PaneLayout
+from playground.studio.settings_panel import draw_hints
 
 from .panel_desk import OpenBare
 from .screen import HILLS
@@ -85,3 +92,77 @@ def test_panes_share_the_window(open_bare: OpenBare, folder: Path, size: tuple[i
     preferences.choose(panes={})
     for name in ("code", "strip"):
         assert panes.is_open(name, narrow=False) and not panes.is_open(name, narrow=True)
+
+
+# ── settings and hints ────────────────────────────────────────────────────────
+
+
+@pytest.fixture(autouse=True)
+def _english_and_dark() -> Iterator[None]:
+    yield
+    choose_language("en")
+    theme.palette = theme.DARK
+
+
+@pytest.mark.parametrize("by", ["a click", "F10"])
+def test_settings_take_effect_at_once(open_bare: OpenBare, folder: Path, by: str) -> None:
+    bare = open_bare(folder)
+    preferences = bare.bench.interface.preferences
+    preferences.choose(panes={"code": 0.0, "strip height": 0.5})
+    label = next(label for label in bare.places if label.endswith("###settings"))
+    if by == "a click":
+        bare.click(label)
+    else:
+        bare.bench.interface.panel_shown = False
+        bare.key(imgui.Key.f10)
+    for control in ("Français###language fr", "Clair###light", "+###larger", "as delivered"):
+        bare.run_frames(2)
+        bare.click(next(label for label in bare.places if control in label))
+    assert bare.bench.interface.panel_shown
+    assert (preferences.language, preferences.is_light, preferences.size) == ("fr", True, 1.1)
+    assert preferences.panes == {}
+    bare.run_frames(2)
+    assert any(label.startswith("FR") for label in bare.places)
+
+
+def test_a_key_is_hinted_at_until_it_is_used(tmp_path: Path) -> None:
+    preferences = remembered_preferences(tmp_path)
+    assert preferences.hints == list(HINTS)
+    preferences.use_key("O")
+    preferences.use_key("G")  # which is none of them
+    assert remembered_preferences(tmp_path).hints == [key for key in HINTS if key != "O"]
+    (tmp_path / "interface.json").write_text('{"format": 1, "used_keys": [3, "?", "x"]}')
+    assert remembered_preferences(tmp_path).used_keys == ("?",)
+
+
+def test_hints_name_keys_that_there_are() -> None:
+    french = tomllib.loads((Path(language.__file__).parent / "french.toml").read_text("utf-8"))
+    assert HINTS.keys() <= {key.name for key in all_keys()} and set(HINTS.values()) <= french.keys()
+
+
+def test_hints_go_one_by_one_and_all_at_once(open_bare: OpenBare, folder: Path) -> None:
+    bare = open_bare(folder)
+    preferences = bare.bench.interface.preferences
+
+    def frame(area: Area) -> bool:
+        """Return whether the line is drawn over an area."""
+        bare.places.clear()
+        draw = bare.draw
+        bare.draw = lambda: (draw(), draw_hints(preferences, bare.theme, area))  # type: ignore[method-assign]
+        bare.run_frames(2)
+        bare.draw = draw  # type: ignore[method-assign]
+        return "×###close hints" in bare.places
+
+    wide = (330.0, 0.0, 950.0, 720.0)
+    assert frame(wide)
+    x, y, *_ = bare.places["×###close hints"]
+    assert 640 < y < 700 and 700 < x < 1100
+    assert not frame((330.0, 0.0, 60.0, 720.0)) and not frame((330.0, 0.0, 950.0, 100.0))
+    for key, letter in (("?", "?"), ("Ctrl+E", ""), ("O", "")):
+        if letter:
+            imgui.get_io().add_input_character(ord(letter))
+            bare.run_frames()
+        else:
+            bare.key(*((imgui.Key.mod_ctrl, imgui.Key.e) if key == "Ctrl+E" else (imgui.Key.o,)))
+        assert key in preferences.used_keys
+    assert not frame(wide), "all were used"

@@ -122,7 +122,7 @@ def test_the_page_is_drawn_and_its_cards_clicked(page: StartPage, bare: Bare, an
     def frame() -> None:
         imgui.get_io().delta_time = 1 / 60
         imgui.new_frame()
-        panel.draw(page, bare.theme, bare.bench.interface.preferences)
+        panel.draw(page, bare.theme, bare.bench.interface)
         imgui.render()
         for texture in imgui.get_platform_io().textures:
             texture.set_status(imgui.ImTextureStatus.ok)

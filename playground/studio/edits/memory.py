@@ -25,8 +25,8 @@ from playground.files import new_name, read_regular, write_file
 from playground.json_text import read_json
 from playground.sketch.model import Camera, Value
 from playground.studio.edits.edits import Edits, FileValue, StoredEdits
-from playground.studio.language import tr
 from playground.studio.land.looks import Appearance
+from playground.studio.language import tr
 
 
 def set_aside(path: Path, what: str, error: Exception) -> str:

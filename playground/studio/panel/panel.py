@@ -55,6 +55,7 @@ from playground.studio.panel.passes_panel import Sections
 from playground.studio.panel.randomise import at_random, mutated, targets
 from playground.studio.picture.view import ref_name
 from playground.studio.session import Session
+from playground.studio.settings_panel import draw_settings, settings_label
 from playground.studio.theme import Theme
 from playground.studio.widgets import WidgetSlot, draw_value, explanation, slide
 
@@ -168,10 +169,9 @@ def draw_head(memory: PanelState, bench: Workbench, look: Theme) -> None:
         style = imgui.get_style()
         room = imgui.get_content_region_avail().x
         buttons = [addition for addition in bench.additions if addition.button]
-        widths = [
-            imgui.calc_text_size(tr(addition.button)).x + 2 * style.frame_padding.x for addition in buttons
-        ]
-        wide = sum(widths) + style.item_spacing.x * max(len(buttons) - 1, 0)
+        labels = [*(tr(addition.button) for addition in buttons), settings_label()]
+        widths = [imgui.calc_text_size(label, True).x + 2 * style.frame_padding.x for label in labels]
+        wide = sum(widths) + style.item_spacing.x * (len(labels) - 1)
         start = imgui.get_cursor_pos_x()
         imgui.text_disabled(fitting_path(shown(path), room - wide - style.item_spacing.x))
         imgui.set_item_tooltip(str(path))
@@ -179,6 +179,8 @@ def draw_head(memory: PanelState, bench: Workbench, look: Theme) -> None:
             imgui.same_line(*() if at else (start + room - wide,))
             if button(tr(addition.button), tr(addition.button_note), small=True):
                 addition.toggle()
+        imgui.same_line(*() if buttons else (start + room - wide,))
+        draw_settings(bench.interface, look, small=True)
     if sketch is None:
         return
     with look.font(look.text, theme.SMALL):

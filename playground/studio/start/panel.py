@@ -12,9 +12,10 @@ from imgui_bundle import portable_file_dialogs as dialogs
 
 from playground.allowed_files import ELEVATIONS, SHADERS
 from playground.studio import theme
-from playground.studio.draw import QUIET, button, choose, explain, fitting, menu, window
-from playground.studio.interface import Preferences
-from playground.studio.language import LANGUAGES, choose_language, language, tr
+from playground.studio.draw import QUIET, button, explain, fitting, menu, window
+from playground.studio.interface import Interface
+from playground.studio.language import tr
+from playground.studio.settings_panel import draw_settings, settings_label
 from playground.studio.start.page import TEMPLATES, Card, StartPage, Template, has_file_dialogs
 from playground.studio.start.thumbnails import CELL, place_of, read_atlas, read_picture
 from playground.studio.theme import Theme
@@ -56,14 +57,14 @@ class StartPanel:
         """Whether a dialog of the system is open, whose answer is asked for."""
         return self._dialog is not None
 
-    def draw(self, page: StartPage, look: Theme, preferences: Preferences) -> None:
+    def draw(self, page: StartPage, look: Theme, interface: Interface) -> None:
         """Draw the page, and do what is clicked on."""
         self._take_answer(page)
         room = imgui.get_main_viewport().size
         imgui.set_next_window_pos(ImVec2(0, 0))
         imgui.set_next_window_size(room)
         with window("start page", _PAGE, ground=theme.colour(theme.palette.ground)):
-            _draw_preferences(preferences, look)
+            _draw_title(interface, look)
             self._draw_head(page, look)
             if self._types:
                 self._draw_path_field(page)
@@ -245,19 +246,11 @@ class StartPanel:
         return texture
 
 
-def _draw_preferences(preferences: Preferences, look: Theme) -> None:
-    """Draw the page's title, and at its right the language and the colours."""
+def _draw_title(interface: Interface, look: Theme) -> None:
+    """Draw the page's title, and at its right the window's settings."""
     with look.font(look.bold, theme.TEXT_SIZE + 5):
         imgui.text_unformatted(tr("Terrain shader playground"))
-    style, wide = imgui.get_style(), 110 * look.scale
-    label = tr("Dark") if preferences.is_light else tr("Light")
-    taken = wide + imgui.calc_text_size(label).x + 2 * style.frame_padding.x + style.item_spacing.x
-    imgui.same_line(max(imgui.get_content_region_avail().x - taken, 320 * look.scale))
-    imgui.set_next_item_width(wide)
-    chosen = choose("##language", LANGUAGES[language()], LANGUAGES, language(), name=LANGUAGES.__getitem__)
-    imgui.set_item_tooltip(tr("The window's language; so far of its newer parts"))
-    if chosen is not None:
-        preferences.choose(language=choose_language(chosen))
-    imgui.same_line()
-    if button(f"{label}###colours", tr("The window's colours")):
-        preferences.choose(is_light=not preferences.is_light)
+    wide = imgui.calc_text_size(settings_label(), True).x + 2 * imgui.get_style().frame_padding.x
+    start = imgui.get_cursor_pos_x()
+    imgui.same_line(start + max(imgui.get_content_region_avail().x - wide, 0.0))
+    draw_settings(interface, look)
