@@ -65,7 +65,7 @@ from playground.studio.picture.disk_caching import SessionCaching
 from playground.studio.picture.full_screen import Painter
 from playground.studio.picture.panel import draw_part_labels
 from playground.studio.problems.non_finite import FiniteWatch
-from playground.studio.problems.panel import ErrorsList, draw_not_finite
+from playground.studio.problems.panel import ErrorsList, draw_border, draw_not_finite
 from playground.studio.problems.problems import TerminalErrors, Warnings, to_log
 from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.remote.remotes import Remotes
@@ -536,6 +536,8 @@ class Live:
         above = (*area[:3], area[3] - taken)
         finite, tracing = self.finite, bench.tracing
         draw("what is not finite", lambda: draw_not_finite(finite, session, tracing, look, above), None)
+        if picture is not None:
+            draw("the border", lambda: draw_border(bench.problems, look, area), None)
         errors = ErrorsList(bench.problems, bench.files, session, bench.interface)
         draw("the list of errors", lambda: errors.draw(look, above), None)
         if picture is None and session.error is None and session.catch_up.behind is None:

@@ -26,7 +26,7 @@ from playground.studio.interface import WindowControls
 from playground.studio.overlay import PATIENCE, checking_text
 from playground.studio.problems import panel as errors_list
 from playground.studio.problems.non_finite import REST, FiniteWatch, summary
-from playground.studio.problems.panel import place_in, ref_of
+from playground.studio.problems.panel import draw_border, place_in, ref_of
 from playground.studio.problems.problems import Problems, TerminalErrors, Warnings, passes_of
 from playground.studio.reload.watcher import Follower
 from playground.studio.session import Session
@@ -226,6 +226,30 @@ def test_an_error_is_listed_copied_folded_and_gone_once_fixed(harness: Harness, 
     harness.places.clear()
     harness.run_frames(2)
     assert not any("##" in label and ("badge" in label or "place" in label) for label in harness.places)
+
+
+def test_the_sign_of_an_error_goes_to_its_line(harness: Harness, folder: Path) -> None:
+    broken(harness, folder)
+    harness.click("Fold##errors")
+    harness.click(next(label for label in harness.places if label.endswith("###jump")))
+    current = harness.bench.files.current
+    assert current is not None and current.text.path == folder / "wave.glsl" and current.line == 3
+    assert not harness.bench.problems.open, "the list stays folded"
+
+
+def test_a_picture_that_stays_has_a_red_border(harness: Harness, folder: Path) -> None:
+    """Counted are the corners of what is drawn behind all windows."""
+
+    def drawn() -> int:
+        before = imgui.get_background_draw_list().vtx_buffer.size()
+        draw_border(harness.bench.problems, harness.theme, (330.0, 0.0, 600.0, 400.0))
+        return imgui.get_background_draw_list().vtx_buffer.size() - before
+
+    counts = []
+    harness.run_frames(1, around=lambda draw: (draw(), counts.append(drawn())))
+    broken(harness, folder)
+    harness.run_frames(1, around=lambda draw: (draw(), counts.append(drawn())))
+    assert counts[0] == 0 and counts[1] >= 8
 
 
 def test_the_words_can_be_selected(harness: Harness, folder: Path) -> None:

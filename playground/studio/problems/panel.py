@@ -80,6 +80,16 @@ _FLAGS |= imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_focus_on
 _FLAGS |= imgui.WindowFlags_.no_bring_to_front_on_focus
 
 
+def draw_border(problems: Problems, look: Theme, area: Area) -> None:
+    """Draw a thin red border around the picture that stays while what is written now does not compile."""
+    if not problems.errors:
+        return
+    wide = 2 * look.scale
+    low = ImVec2(area[0] + wide / 2, area[1] + wide / 2)
+    far = ImVec2(area[0] + area[2] - wide / 2, area[1] + area[3] - wide / 2)
+    imgui.get_background_draw_list().add_rect(low, far, theme.packed(theme.palette.alarm), 0.0, wide)
+
+
 @dataclass(frozen=True)
 class ErrorsList:
     """The list in one frame of a window, or the badge in its place."""
@@ -112,9 +122,22 @@ class ErrorsList:
         padding = ImVec2(4 * look.scale, 4 * look.scale)
         with self._window("badge", area, look, window_padding=padding, window_min_size=ImVec2(8, 8)):
             with inked(self._ink):
+                if self.problems.errors:
+                    note = tr("Goes to the line that is wrong")
+                    if button(f"! {len(self.problems.errors)}###jump", note, small=True):
+                        self._jump()
+                    imgui.same_line()
                 if imgui.small_button(f"{self.problems.headline()}##badge"):
                     self.problems.open = True
             imgui.set_item_tooltip(tr("Show the list (F8)"))
+
+    def _jump(self) -> None:
+        """Go to the mistake that is looked at, else the first: in the code pane, where it has a file."""
+        problems = self.problems
+        if problems.all[max(problems.at, 0)].file:
+            self.files.open_current(problems, here=True)
+        else:
+            problems.open = True
 
     def _list(self, look: Theme, area: Area) -> None:
         problems, margin = self.problems, 14 * look.scale
@@ -142,7 +165,7 @@ class ErrorsList:
         problems, text = self.problems, self.problems.headline()
         if problems.errors:
             stays = tr("the last good picture stays") if self.session.shown else tr("there is no picture yet")
-            text = f"{text}; {stays}"
+            text = f"! {text}; {stays}"
         style = imgui.get_style()
         wide = sum(imgui.calc_text_size(b).x + 2 * style.frame_padding.x for b in (tr("Copy"), tr("Fold")))
         right = imgui.get_window_width() - style.window_padding.x - wide - style.item_spacing.x
