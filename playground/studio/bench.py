@@ -91,7 +91,8 @@ class Workbench:
 
     def toggle_passes(self) -> None:
         """Open the strip at the passes, which get the keys, or close it."""
-        self.inspection.graph.gets_keys = self.panes.toggle_strip("passes")
+        self.inspection.graph.gets_keys = not self.panes.shows("passes")
+        self.panes.toggle_strip("passes")
 
     def toggle_code(self) -> None:
         """Close the code pane, or open it and give it the keys."""

@@ -146,11 +146,13 @@ class Panes:
         self.remember("strip", float(shown))
         self.selects = tab or self.selects
 
-    def toggle_strip(self, tab: str) -> bool:
-        """Open the strip at a tab, or close it where it shows that one; return whether it is open."""
-        opens = self.tab != tab or not self.is_open("strip", narrow=self.is_narrow)
-        self.show_strip(tab, shown=opens)
-        return opens
+    def toggle_strip(self, tab: str) -> None:
+        """Open the strip at a tab, or close it where it shows that one."""
+        self.show_strip(tab, shown=not self.shows(tab))
+
+    def shows(self, tab: str) -> bool:
+        """Return whether the strip is open at a tab."""
+        return self.tab == tab and self.is_open("strip", narrow=self.is_narrow)
 
     def fraction(self, name: str, otherwise: float) -> float:
         """Return the part of the window that a pane takes."""

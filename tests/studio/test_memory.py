@@ -62,6 +62,7 @@ FULL = Remembered(
         16.0,
     ),
     ((1, Camera(azimuth=180.0, elevation=89.0)), (3, Camera(target=(1.0, 2.0, 3.0)))),
+    (("height", (1.5, 2.0)),),
     Appearance(2.5, Look("clay", "height:height", (("sunlight.sun", (120.0, 30.0)),))),
 )
 
@@ -134,11 +135,11 @@ def test_a_file_of_before_there_was_more_to_remember_is_read(tmp_path: Path) -> 
     memory = Memory(tmp_path / "sketch.toml", tmp_path)
     memory.write(FULL)
     table = json.loads(memory.path.read_text(encoding="utf-8"))
-    for name in ("at", "camera_in_file", "loop", "compared", "views", "appearance"):
+    for name in ("at", "camera_in_file", "loop", "compared", "views", "places", "appearance"):
         del table[name]
     memory.path.write_text(json.dumps(table), encoding="utf-8")
     expected = replace(FULL, at=None, camera_in_file=None, loop=None, compared=None, views=())
-    expected = replace(expected, appearance=Appearance())
+    expected = replace(expected, places=(), appearance=Appearance())
     assert memory.read() == (expected, "")
 
 
