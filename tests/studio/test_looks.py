@@ -94,6 +94,16 @@ def test_panes_share_the_window(open_bare: OpenBare, folder: Path, size: tuple[i
         assert panes.is_open(name, narrow=False) and not panes.is_open(name, narrow=True)
 
 
+def test_a_key_of_a_tab_opens_it_and_closes_the_strip() -> None:
+    panes = Panes(Preferences(panes={}))
+    panes.tab = "passes"
+    panes.toggle_strip("versions")  # the strip shows another tab
+    assert panes.selects == "versions" and panes.is_open("strip", narrow=False)
+    panes.tab = "versions"
+    panes.toggle_strip("versions")
+    assert not panes.is_open("strip", narrow=False) and not panes.shows("versions")
+
+
 # ── settings and hints ────────────────────────────────────────────────────────
 
 
