@@ -2,8 +2,9 @@
 
 The text editor asks imgui for its shortcuts in one chain. In the frame in which one is obeyed those further
 down are not asked, and imgui routes none to who did not ask in the frame before: Enter right after End does
-nothing. So a key that types no letter gets a frame, and an empty one after it. Each brings the modifiers that
-its event carried: Ctrl+Z counts where both keys are up again before the frame.
+nothing. So a key that types no letter gets a frame, and an empty one after it. imgui itself puts off events
+of a frame, as a press after the release of the same key: the empty frame comes when it has none left. Each
+key brings the modifiers that its event carried: Ctrl+Z counts where both keys are up again before the frame.
 """
 
 from __future__ import annotations
@@ -69,7 +70,7 @@ class KeyQueue:
     def feed(self) -> None:
         """Give imgui what belongs to the frame that begins: letters in a row, or one key that types none."""
         if self._rests:
-            self._rests = False
+            self._rests = len(imgui.get_current_context().input_events_queue) > 0
             return
         io, letters = imgui.get_io(), 0
         in_field = io.want_text_input
