@@ -188,14 +188,17 @@ def new_name(path: str | Path) -> Iterator[Path]:
     Raises:
         DataError: a missing folder, no permission, a full disk.
     """
-    requested = Path(path)
-    numbered = (requested.with_name(f"{requested.stem}-{n}{requested.suffix}") for n in count(2))
-    name = next(name for name in chain([requested], numbered) if _takes(name))
+    name = next(name for name in numbered_names(Path(path)) if _takes(name))
     try:
         yield name
     except BaseException:
         name.unlink(missing_ok=True)
         raise
+
+
+def numbered_names(path: Path) -> Iterator[Path]:
+    """Yield `hills.png`, `hills-2.png` and so on, of which the first that is free is a new name."""
+    return chain([path], (path.with_name(f"{path.stem}-{n}{path.suffix}") for n in count(2)))
 
 
 def _takes(path: Path) -> bool:

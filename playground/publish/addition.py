@@ -1,4 +1,4 @@
-"""What publishing adds to a window: a window of its own, to capture large pictures, films and sheets."""
+"""What publishing adds to a window: a dialog that writes what is there as a picture, a film or a file."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 
 from imgui_bundle import imgui
 
-from playground.publish.window.captures import Captures
-from playground.publish.window.panel import draw_capture
+from playground.publish.window.panel import draw_show
+from playground.publish.window.show import Show
 from playground.studio.addition import Addition, Layer
 from playground.studio.bench import Host, Workbench
 from playground.studio.keys import Key
@@ -16,64 +16,75 @@ from playground.studio.keys import Key
 _POLL_INTERVAL = 0.1  # [s] between looks at a job
 
 
-class Capture(Addition):
-    """The captures of one window."""
+class Showing(Addition):
+    """What one window shows to others."""
 
-    name = "the capture's window"
-    button = "Capture"
-    button_note = "Large pictures, numbered ones, films, sheets of a sweep (C)"
+    name = "what is shown to others"
+    button = "Show…"
+    button_note = "A picture, a turntable, a film, a web page or a mesh of what is here (C)"
 
     def __init__(self, host: Host) -> None:
         bench = host.bench
         folder, settle = bench.actions.folder, bench.painting.settle
-        self.captures = Captures(bench.session, bench.notices, folder, settle)
+        self.show = Show(bench.session, bench.notices, folder, settle)
         self._theme = host.theme
 
+    @property
+    def has_keys(self) -> bool:
+        """Whether the dialog has the keyboard."""
+        return self.show.shown and self.show.has_keys
+
     def toggle(self) -> None:
-        """Open or close the window."""
-        self.captures.toggle()
+        """Open or close the dialog."""
+        self.show.toggle()
+        if self.show.shown:
+            self.show.measure()
 
     def popups(self) -> Iterator[Layer]:
-        """Yield the window, where it is open."""
-        if self.captures.shown:
-            yield "capture", self.captures.toggle
+        """Yield the dialog, where it is open."""
+        if self.show.shown:
+            yield "show", self.show.toggle
 
     def status(self) -> Mapping[str, object]:
-        """Return the path that was captured last."""
-        return {"captured": str(self.captures.made or "")}
+        """Return the path that was written last."""
+        return {"captured": str(self.show.made or "")}
 
     @property
     def patience(self) -> float:
         """How long nothing needs to be done here [s]."""
-        return math.inf if self.captures.working is None else _POLL_INTERVAL
+        return math.inf if self.show.working is None else _POLL_INTERVAL
 
     def take(self) -> None:
         """Take in how far the job is."""
-        self.captures.poll()
+        self.show.poll()
 
     def draw_over(self) -> None:
-        """Draw the window, while it is open."""
-        draw_capture(self.captures, self._theme())
+        """Draw the dialog, while it is open."""
+        draw_show(self.show, self._theme())
+
+    def update(self, *, idle: bool) -> None:
+        """Take what the last picture took."""
+        self.show.follow()
 
     def close(self) -> None:
         """Stop the job that is at work."""
-        self.captures.close()
+        self.show.close()
 
 
-def open_addition(host: Host) -> Capture:
-    """Return the captures of a window."""
-    return Capture(host)
+def open_addition(host: Host) -> Showing:
+    """Return what a window shows to others."""
+    return Showing(host)
 
 
 def check_request(request: Mapping[str, object]) -> None:
-    """Accept every request: none names a capture."""
+    """Accept every request: none names what is shown to others."""
 
 
 def _toggle(bench: Workbench) -> None:
     for addition in bench.additions:
-        if isinstance(addition, Capture):
+        if isinstance(addition, Showing):
             addition.toggle()
 
 
-KEYS = (Key(imgui.Key.c, "C", "capture: large pictures, films, sheets", _toggle),)
-"""The key of the window."""
+KEYS = (Key(imgui.Key.c, "C", "show: a picture, turntable, film, web page, mesh", _toggle),)
+"""The key of the dialog."""

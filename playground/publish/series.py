@@ -14,7 +14,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -31,7 +31,7 @@ from playground.publish.large import save_picture
 from playground.publish.sweep import DEFAULT_STEPS, MAX_PICTURES, Swept, columns_of, combinations, read_sweep
 from playground.sketch.load import opened
 from playground.sketch.model import FPS as FPS
-from playground.sketch.model import MAX_SIDE, Sketch
+from playground.sketch.model import MAX_SIDE, Camera, Sketch
 from playground.sketch.traits import traits_of
 
 if TYPE_CHECKING:
@@ -48,7 +48,10 @@ MAX_FRAMES = 1_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class Series:
-    """A sketch at several times or, where it has ``cases``, at one time with several values."""
+    """A sketch at several times or, where it has ``cases``, at one time with several values.
+
+    One that ``turns`` is a turntable: after its last picture its first would come again.
+    """
 
     sketch: Sketch
     count: int  # pictures
@@ -56,6 +59,8 @@ class Series:
     fps: Fraction
     start: float = 0.0  # [s] of the first picture
     steps: Mapping[str, int] | None = None  # as in ``Engine.render``
+    turns: bool = False  # the camera goes once round at one time, clockwise, seen from above
+    seen: Callable[[Camera], Camera] | None = None  # what stands for the sketch's camera at each time
     cases: tuple[Swept, ...] = ()  # of a sweep, a sketch for each picture
     columns: int = 1  # pictures of a sweep side by side
 
@@ -128,19 +133,25 @@ class Series:
 
     def time(self, number: int) -> float:
         """Return the time in seconds of a picture, from 0."""
-        return self.start if self.cases else self.start + float(number / self.fps)
+        return self.start if self.cases or self.turns else self.start + float(number / self.fps)
 
     def picture(self, engine: Engine, number: int) -> Picture:
         """Return a picture, from 0, that ``engine`` draws."""
         sketch = self.cases[number].sketch if self.cases else self.sketch
         at = {"size": self.size, "time": self.time(number), "steps": self.steps}
+        if self.turns or self.seen is not None:
+            sketch = sketch.at(self.time(number))
+            camera = self.seen(sketch.camera) if self.seen is not None else sketch.camera
+            if self.turns:
+                camera = replace(camera, azimuth=(camera.azimuth + 360.0 * number / self.count) % 360.0)
+            sketch = sketch.with_camera(camera)
         return Picture(engine, number, sketch, at)
 
     @property
     def still(self) -> str:
         """Return a message where all pictures are the same, since nothing depends on the time; else ""."""
         traits, first, last = traits_of(self.sketch), self.time(0), self.time(self.count - 1)
-        if self.cases or self.count == 1 or traits.moves or traits.devices:
+        if self.cases or self.turns or self.count == 1 or traits.moves or traits.devices:
             return ""
         times = (last, *(frame.time for frame in self.sketch.keyframes if first < frame.time < last))
         if any(self.sketch.at(time) != self.sketch.at(first) for time in times):

@@ -78,16 +78,25 @@ class Video:
     takes its name all the same, and ``warning`` says so; where another number of pictures is
     in it, it is named ``film-first-119.mp4`` and ``DataError`` says so. When the block fails
     before that, nothing is left; when it is interrupted, what is there becomes a shorter
-    video, as ``film-first-120.mp4``, and ``Stopped`` has its name.
+    video, as ``film-first-120.mp4``, and ``Stopped`` has its name; without ``names_shorter`` a video of
+    fewer pictures takes the name itself.
 
     Raises ``DataError``, ``ParameterError`` or ``ContextError`` in a message for another
     ending, odd sides, a rate that a GIF has not, a missing folder, and where nothing encodes.
     """
 
     def __init__(
-        self, path: str | Path, size: tuple[int, int], fps: Fraction, count: int, *, quality: str = QUALITY
+        self,
+        path: str | Path,
+        size: tuple[int, int],
+        fps: Fraction,
+        count: int,
+        *,
+        quality: str = QUALITY,
+        names_shorter: bool = True,
     ) -> None:
         self.path = Path(path).expanduser()
+        self._names_shorter = names_shorter
         self.size, self.fps, self.count = size, fps, count
         self.added = 0
         self.dropped = 0  # pictures so far whose alpha was below one somewhere
@@ -156,6 +165,8 @@ class Video:
             self._partial.rename(path)
 
     def _first(self, count: int) -> Path:
+        if not self._names_shorter:
+            return self.path
         return self.path.with_name(f"{self.path.stem}-first-{count}{self.path.suffix}")
 
     def _shorter(self) -> Path | None:
@@ -182,6 +193,7 @@ class VideoFile:
 
     path: str | Path
     quality: str = QUALITY
+    names_shorter: bool = True
 
     @property
     def paths(self) -> list[Path]:
@@ -195,7 +207,8 @@ class VideoFile:
     @contextmanager
     def open(self, series: Series, notice: Callable[[str], None]) -> Iterator[Add]:
         """Write the video; ``notice`` gets a message where it could not be checked, or alpha was dropped."""
-        with Video(self.path, series.size, series.fps, series.count, quality=self.quality) as video:
+        how: dict[str, Any] = {"quality": self.quality, "names_shorter": self.names_shorter}
+        with Video(self.path, series.size, series.fps, series.count, **how) as video:
             yield lambda picture: video.add(picture.array)
         for note in (video.warning, alpha_note(video.dropped, series.count, "the video")):
             if note:
@@ -330,6 +343,13 @@ def read_packets(path: Path) -> tuple[Fraction, list[Fraction | None]]:
         return read(path)
     except (OSError, LookupError, ValueError) as error:
         raise DataError(f"cannot be read back: {reason(error)}", file=path) from None
+
+
+def missing_encoder() -> str:
+    """Return what is missing for a video, and how to get it; "" where one can be written."""
+    if _pyav() is not None or shutil.which("ffmpeg"):
+        return ""
+    return needs("a video", "PyAV, or the program ffmpeg on PATH", "video")
 
 
 def _pyav() -> Any:

@@ -72,6 +72,11 @@ class Addition:
         return math.inf
 
     @property
+    def has_keys(self) -> bool:
+        """Whether a window of its own has the keyboard: the keys of the window but Esc are not asked for."""
+        return False
+
+    @property
     def shows_own(self) -> bool:
         """Whether the sketch that is shown is the room's, and not the user's."""
         return False

@@ -268,7 +268,7 @@ def act_on_keys(bench: Workbench) -> None:
         return
     if keeps_keys(bench.interface.ahead) or io.want_text_input or io.key_alt:
         return
-    if bench.inspection.graph.took_key:
+    if bench.inspection.graph.took_key or any(addition.has_keys for addition in bench.additions):
         return
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         return

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from pathlib import Path
 
 from playground.publish.capture_job import PICTURE, CaptureJob, JobProcess
@@ -13,7 +12,7 @@ def test_a_job_that_cannot_be_sent_ends_with_a_sentence(tmp_path: Path) -> None:
         """Stand in for a sketch: what is defined inside a function cannot be pickled."""
 
     working = JobProcess(
-        CaptureJob(kind=PICTURE, sketch=sketch, folder=tmp_path, size=(64, 64), fps=Fraction(30))  # type: ignore[arg-type]
+        CaptureJob(kind=PICTURE, sketch=sketch, folder=tmp_path, ending=".png", size=(64, 64))  # type: ignore[arg-type]
     )
     finished = working.poll(timeout=60.0)
     assert finished is not None and finished.path is None
