@@ -10,9 +10,10 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -254,7 +255,7 @@ class JobProcess:
 
     def __init__(self, job: CaptureJob, *, software: bool = False, driver: str = "auto") -> None:
         self.job = job
-        self.started = time.monotonic()
+        self.started, self._since = time.monotonic(), time.time()
         self._first = (0, 0.0)  # how many parts were done when the first were, and when that was
         self.stopping = False  # whether ``stop`` was called
         # It outlives its parent until its next part is done, to remove the files that it has begun.
@@ -286,12 +287,30 @@ class JobProcess:
         """Return how it ended, None while it continues; waits ``timeout`` seconds at the most."""
         if not self._first[0] and self.progress[0]:
             self._first = self.progress[0], time.monotonic()
-        return _finished(self.task.result()) if self.task.wait(timeout) else None
+        if not self.task.wait(timeout):
+            return None
+        finished = _finished(self.task.result())
+        if finished.path is None:
+            self._remove_reserved()
+        return finished
 
     def close(self) -> None:
         """Stop it and wait until it has ended what it has begun; kill it if that takes too long."""
         self.task.cancel(CANCEL_SECONDS)
-        self.task.result()
+        if _finished(self.task.result()).path is None:
+            self._remove_reserved()
+
+    def _remove_reserved(self) -> None:
+        """Remove the empty file or folder that holds the name of what a process that was killed had begun."""
+        for path in takewhile(Path.exists, numbered_names(self.job.first_name)):
+            with suppress(OSError):  # one that is in use
+                status = path.stat()
+                if status.st_mtime < self._since - 1.0:
+                    continue
+                if path.is_dir():
+                    path.rmdir()  # if it is empty
+                elif not status.st_size:
+                    path.unlink()
 
 
 _PATIENCE = 3600.0  # [s] that one picture of a film may take until its film is given up

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.paths import shown
 from playground.publish.capture_job import FILM, MESH, MOVING, PAGE, SHEET, TURNTABLE, JobProcess
 from playground.publish.sweep import parts_of, sweep_text
 from playground.publish.video import QUALITIES
@@ -44,6 +43,8 @@ _DIALOG &= ~imgui.WindowFlags_.no_nav_inputs
 def draw_show(show: Show, look: Theme) -> None:
     """Draw the dialog, while it is open."""
     if not show.shown:
+        if show.has_keys:
+            _give_keys_back(show)
         return
     room = imgui.get_main_viewport().size
     imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.appearing, ImVec2(0.5, 0.5))
@@ -51,7 +52,7 @@ def draw_show(show: Show, look: Theme) -> None:
     imgui.set_next_window_size(ImVec2(wide, 0))
     imgui.set_next_window_size_constraints(ImVec2(wide, 0), ImVec2(wide, room.y - 16))
     with styled({imgui.Col_.window_bg: theme.colour(theme.palette.popup, 0.98)}):
-        visible, stays = imgui.begin(f"{tr('Show')}###show", True, _DIALOG)
+        visible, stays = imgui.begin(f"{tr('Show to others')}###show", True, _DIALOG)
         enters = _takes_keys(show)
         if visible:
             with disabled(show.working is not None):
@@ -71,15 +72,22 @@ def _takes_keys(show: Show) -> bool:
 
     Tab and arrows go from choice to choice, Space presses; Enter is the dialog's wherever the focus is.
     """
-    show.has_keys = imgui.is_window_focused(imgui.FocusedFlags_.child_windows)
-    if not show.has_keys:
+    if not imgui.is_window_focused(imgui.FocusedFlags_.child_windows):
+        if show.has_keys and not imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
+            _give_keys_back(show)
         return False
+    show.has_keys = True
     imgui.get_io().config_flags |= imgui.ConfigFlags_.nav_enable_keyboard.value
     enters = False
     for key in (imgui.Key.enter, imgui.Key.keypad_enter):
         imgui.internal.set_key_owner(key, imgui.get_id("enter"))
         enters |= imgui.is_key_pressed(key, False)
     return enters and not imgui.is_window_appearing()
+
+
+def _give_keys_back(show: Show) -> None:
+    show.has_keys = False
+    imgui.get_io().config_flags &= ~imgui.ConfigFlags_.nav_enable_keyboard.value
 
 
 # ── what is chosen ───────────────────────────────────────────────────────────
@@ -234,14 +242,14 @@ def _prospect(show: Show, look: Theme, *, enters: bool) -> None:
                 for note in prospect.notes:
                     imgui.text_unformatted(note)
     imgui.spacing()
-    if show.is_still and not show.refusal(TURNTABLE):
+    if prospect.is_still and not show.refusal(TURNTABLE):
         note = tr("The camera goes once round the land, and the time stands")
         if button(f"{tr('Make a turntable instead')}###instead", note):
             show.settings.kind = TURNTABLE
         imgui.same_line()
-    writes = button(f"{tr('Write it')}  (Enter)###write", enabled=not prospect.error)
+    writes = button(f"{tr('Write it (Enter)')}###write", enabled=not prospect.error)
     imgui.same_line()
-    if button(f"{tr('Close')}  (Esc)###close"):
+    if button(f"{tr('Close (Esc)')}###close"):
         show.toggle()
     if writes or (enters and not prospect.error):
         show.start()
@@ -282,10 +290,9 @@ def _result(show: Show, look: Theme) -> None:
             imgui.text_unformatted(show.result)
         if show.made is None:
             return
-        if button(f"{tr('Open the folder')}###folder", shown(show.made)) and (
-            complaint := open_folder(show.made)
-        ):
+        path = str(show.made.absolute())
+        if button(f"{tr('Open the folder')}###folder", path) and (complaint := open_folder(show.made)):
             show.notices.say(complaint)
         imgui.same_line()
-        if button(f"{tr('Copy the path')}###copy", str(show.made)):
-            imgui.set_clipboard_text(str(show.made))
+        if button(f"{tr('Copy the path')}###copy", path):
+            imgui.set_clipboard_text(path)

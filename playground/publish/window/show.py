@@ -13,6 +13,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
@@ -21,7 +22,6 @@ from typing import Any
 from playground.data.grid import fitted
 from playground.engine.plan import Plan, view_height, view_input
 from playground.errors import DataError, ParameterError, PlaygroundError
-from playground.paths import shown
 from playground.publish.capture_job import (
     FILM,
     MESH,
@@ -68,7 +68,7 @@ _ENDINGS = {"png16": ".png", "frames": NUMBERED}
 def kind_title(kind: str) -> str:
     """Return what a kind is called."""
     titles = {
-        PICTURE: tr("Picture"),
+        PICTURE: tr("Still picture"),
         TURNTABLE: tr("Turntable"),
         FILM: tr("Film"),
         SHEET: tr("Sheet of a sweep"),
@@ -147,6 +147,7 @@ class Prospect:
     cost: str = ""  # how long and how large, about
     notes: tuple[str, ...] = ()  # what of the window is in it, or cannot be
     error: str = ""  # why nothing can be written
+    is_still: bool = False  # it is that nothing moves in a film
 
 
 _EVERY = 0.5  # [s] after which a prospect is worked out again, should something have changed
@@ -174,7 +175,6 @@ class Show:
     def toggle(self) -> None:
         """Show the dialog, or no longer; a job goes on."""
         self.shown = not self.shown
-        self.has_keys = False
         self.failed = ""
 
     # ── what can be ──────────────────────────────────────────────────────────
@@ -183,7 +183,7 @@ class Show:
         """Return why there can be nothing of a kind; "" where there can."""
         session = self.session
         if session.sketch is None or session.plan is None:
-            return tr("there is no picture yet")
+            return tr("no picture is drawn yet")
         if kind == TURNTABLE and not session.orbits:
             return tr("no camera goes round this picture: there is no land in it")
         if kind == MESH and not view_height(session.plan):
@@ -342,7 +342,7 @@ class Show:
     def _foreseen(self) -> Prospect:
         if self.is_still:
             error = tr("Nothing in this sketch depends on the time: all frames of a film would be the same.")
-            return Prospect(error=error)
+            return Prospect(error=error, is_still=True)
         try:
             job = self.job()
             return Prospect(
@@ -437,7 +437,7 @@ class Show:
             return
         camera = plan.sketch.camera
         moved = plan.sketch.with_camera(replace(camera, azimuth=camera.azimuth + 0.01))
-        with as_before(engine, plan):
+        with suppress(PlaygroundError), as_before(engine, plan):
             engine.options.profiling = True
             engine.draw(moved, size=plan.frame_size, time=plan.time, steps=plan.steps)
             assert engine.record.plan is not None  # it was drawn
@@ -598,7 +598,7 @@ def _result(working: JobProcess, finished: Finished) -> str:
     job, took = working.job, f"{time.monotonic() - working.started:.1f}"
     if finished.path is None:
         return tr("stopped; nothing was kept")
-    name = shown(finished.path)
+    name = finished.path.absolute()
     if finished.stopped:
         return tr("stopped; the first {count} frames are kept: {path}", count=finished.count, path=name)
     if job.kind in (PAGE, MESH):

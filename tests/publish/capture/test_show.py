@@ -340,6 +340,7 @@ def test_a_process_that_dies_is_reported(show: Show) -> None:
     os.kill(task.slot.process.pid, signal.SIGTERM)
     wait(show)
     assert show.failed.startswith("the capture "), show.failed
+    assert not [path for path in show.folder.iterdir() if path.suffix != ".part"], "not even its name"
 
 
 # ── meshes, pages, sheets ─────────────────────────────────────────────────────
@@ -467,6 +468,21 @@ def test_time_grows_with_pixels_and_frames(land: Show) -> None:
     assert many - few == pytest.approx(270 / 29 * (few - small), rel=0.05)
 
 
+def test_a_card_is_asked_what_the_camera_costs(land: Show, monkeypatch: pytest.MonkeyPatch) -> None:
+    engine, session = land.session.engine, land.session
+    moved = [path for path in engine.stale(session.sketch, size=(63, 36)) if path.startswith("view")]  # type: ignore[arg-type]
+    land.measure()
+    assert moved and land.costs.expected(moved[0], 100) is None, "on a processor every picture is timed"
+    session.read()
+    plan, draws, runs = session.plan, session.draws, dict(engine.runs)
+    monkeypatch.setattr(engine, "_info", replace(engine.info, renderer="a card"))
+    land.measure()
+    assert all(land.costs.expected(path, 100) is not None for path in moved)
+    assert session.plan is plan and (session.draws, dict(engine.runs)) == (draws, runs)
+    assert engine.record.plan.sketch == session.sketch  # type: ignore[union-attr]
+    assert not engine.options.profiling, "nothing else has changed"
+
+
 def test_times_and_bytes_are_said_as_a_person_reads_them() -> None:
     assert [duration_text(s) for s in (0.2, 42.4, 600.0, 9000.0)] == [
         "about 1 s",
@@ -589,7 +605,7 @@ def test_the_dialog_fits_a_small_window_in_french(any_engine: Engine, folder: Pa
             for _ in range(3):
                 imgui.new_frame()
                 showing_panel.draw_show(show, bare.theme)
-                size = imgui.internal.find_window_by_name("Montrer###show").size
+                size = imgui.internal.find_window_by_name("Montrer à d’autres###show").size
                 imgui.render()
             assert size.x <= 800 and size.y <= 600 - 16
     finally:
