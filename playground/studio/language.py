@@ -18,6 +18,8 @@ from playground import errors
 LANGUAGES = {"en": "English", "fr": "Français"}
 
 _chosen = "en"
+_NO_BREAK = re.compile(r"(?<=\S) (?=[:;?!»])|(?<=«) ")
+"""Blanks at which no French line ends; the file of words has plain ones."""
 
 
 def language() -> str:
@@ -64,4 +66,5 @@ def shortcut(keys: str) -> str:
 @cache
 def _translations(code: str) -> dict[str, str]:
     names = {"fr": "french.toml", "fr labels": "french_labels.toml"}
-    return tomllib.loads((Path(__file__).parent / names[code]).read_text("utf-8"))
+    words = tomllib.loads((Path(__file__).parent / names[code]).read_text("utf-8"))
+    return {english: _NO_BREAK.sub("\u00a0", text) for english, text in words.items()}

@@ -59,6 +59,7 @@ from playground.sketch.find import find
 from playground.studio import theme
 from playground.studio.draw import SIDE_PANEL, button, fitting, inked, pushed_id, styled, window
 from playground.studio.edits.history import History
+from playground.studio.language import shortcut
 from playground.studio.panel.parameter_list import PanelState, items_of, shown_values
 from playground.studio.panel.passes_panel import Rows
 from playground.studio.theme import Theme
@@ -784,13 +785,13 @@ def _foot(page: Page) -> None:
     reader, count = page.reader, _count(page)
     imgui.separator()
     half = (imgui.get_content_region_avail().x - imgui.get_style().item_spacing.x) / 2
-    if button(f"{page.say('previous')}##previous", "PgUp", enabled=reader.index > 0, wide=half):
+    if button(f"{page.say('previous')}##previous", shortcut("PgUp"), enabled=reader.index > 0, wide=half):
         reader.turn_page(-1)
     imgui.same_line()
     last = reader.index == count - 1
     following = next((summary for summary in reader.summaries if summary.number > page.lesson.number), None)
     text = page.say("next_lesson") if last else page.say("next")
-    note = "PgDn" if not last else following.title if following else ""
+    note = shortcut("PgDn") if not last else following.title if following else ""
     with styled({imgui.Col_.button: theme.colour(theme.palette.grab)}):
         if button(f"{text}##next", note, enabled=not last or following is not None, wide=half):
             if not last:

@@ -421,7 +421,7 @@ def _draw_tab(editing: Editing, files: OpenFiles) -> bool:
         flags |= imgui.TabItemFlags_.set_selected
         files.pane.jumps = False
     label = editing.text.path.name if editing.text.needs_saving else editing.text.title
-    name = f"{label}###{editing.text.title} {'' if editing.text.needs_saving else 'copy'}"
+    name = f"{label}###{editing.text.title} {int(editing.text.needs_saving)}"
     is_seen, stays = imgui.begin_tab_item(name, True, flags)
     if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
         imgui.set_tooltip(editing.text.title)

@@ -22,6 +22,7 @@ from playground.errors import DataError, ParameterError, PlaygroundError, Sketch
 from playground.shader.parameter import is_whole, part_names, tidied
 from playground.sketch.assign import TERRAIN_KEYS, find_targets
 from playground.sketch.model import Graph, Parameter, Value
+from playground.studio.language import tr
 from playground.studio.panel.parameter_list import items_of, shown_values
 from playground.studio.remote.controls import Controls
 
@@ -83,7 +84,7 @@ class Addresses:
         if kind in self._reported or len(self._reported) > _REPORTED:
             return
         if len(self._reported) == _REPORTED:
-            message = "OSC: further messages that fit nothing are ignored without a notice"
+            message = tr("OSC: further messages that fit nothing are ignored without a notice")
         self._reported.add(kind)
         self.controls.bench.notices.say(message)
 
@@ -255,9 +256,11 @@ class Osc:
             for address, arguments in messages:
                 self.send(self._addresses.receive(address, arguments))
         if unread:
-            self._addresses.report_once("unread", "OSC: a packet came in that is no OSC")
+            self._addresses.report_once("unread", tr("OSC: a packet came in that is no OSC"))
         if lost:
-            self._addresses.report_once("lost", f"OSC: more than {MAX_WAITING} addresses came in at once")
+            self._addresses.report_once(
+                "lost", tr("OSC: more than {MAX_WAITING} addresses came in at once", MAX_WAITING=MAX_WAITING)
+            )
 
     def tell(self, changed: Mapping[str, Value], *, everything: bool) -> None:
         """Send new values; ``everything`` where the sketch is another now."""
@@ -278,7 +281,10 @@ class Osc:
             except OSError as error:  # nobody listens, or the buffer is full: the next value says it again
                 if self._addresses is not None:
                     to = "{}:{}".format(*self._target)
-                    self._addresses.report_once("out", f"OSC: nothing can be sent to {to}: {error.strerror}")
+                    self._addresses.report_once(
+                        "out",
+                        tr("OSC: nothing can be sent to {to}: {strerror}", to=to, strerror=error.strerror),
+                    )
 
     def close(self) -> None:
         """Close the sockets."""

@@ -1,0 +1,140 @@
+"""The window in French: no word of it is forgotten, and none is left over."""
+
+from __future__ import annotations
+
+import ast
+import re
+import string
+import tomllib
+
+import pytest
+
+from playground import rooms
+from playground.engine.gl_calls import QUERY, WALL
+from playground.shader.widgets import WIDGETS
+from playground.studio import language
+from playground.studio.addition import Addition
+from playground.studio.compare.compare import Mode
+from playground.studio.keys import GESTURES, all_keys
+from playground.studio.language import choose_language, counted, shortcut, tr
+from playground.studio.paint.brush import TOOLS
+from playground.studio.remote.controllers import KINDS
+from playground.studio.trace.tracing import Beside
+
+from . import words
+
+FILE = words.ROOT / "studio" / "french.toml"
+FRENCH: dict[str, str] = tomllib.loads(FILE.read_text("utf-8"))
+PARAMETER = words.ROOT / "shader" / "parameter.py"  # says what a parameter takes, in the window's words
+
+
+def tables() -> set[str]:
+    """Return the words that stand in tables, and are translated where they are shown."""
+    found = {word for keys in all_keys() for word in re.findall(r"[A-Z]\w+", keys.name)}
+    found |= {word for key in all_keys() for word in (key.meaning, key.brief)}
+    found |= {word for gesture in GESTURES for word in gesture}
+    found |= {*TOOLS, *KINDS, WALL, QUERY, *(mode.value for mode in (*Mode, *Beside))}
+    found |= {facts.expects for facts in WIDGETS.values()}
+    for module in rooms.modules("addition"):
+        kinds = (kind for kind in vars(module).values() if isinstance(kind, type))
+        added = [kind for kind in kinds if issubclass(kind, Addition)]
+        found |= {word for kind in added for word in (kind.button, kind.button_note)}
+    return found - {""}
+
+
+@pytest.fixture(autouse=True)
+def in_english():
+    yield
+    choose_language("en")
+
+
+def test_each_translated_word_has_a_french_line():
+    said = {word for _, tree in words.trees() for word in words.translated(tree)}
+    said |= set(words.translated(ast.parse(PARAMETER.read_text("utf-8")), "say")) | tables()
+    assert len(said) > 600
+    assert sorted(said - FRENCH.keys()) == []
+
+
+def test_no_french_line_is_left_over():
+    there = {text for _, tree in words.trees() for text in (*words.strings(tree), *words.translated(tree))}
+    there |= set(words.strings(ast.parse(PARAMETER.read_text("utf-8")))) | tables()
+    assert sorted(FRENCH.keys() - there) == []
+
+
+def test_no_word_is_shown_as_it_stands():
+    shown = [(path, each) for path, tree in words.trees() for each in words.shown_as_they_are(tree)]
+    places = [f"{path.relative_to(words.ROOT)}:{line}: {text!r}" for path, (line, text) in shown]
+    assert sorted(set(places)) == [], "put them into tr(...)"
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'imgui.button("Go on")',
+        'imgui.button("Go on##it")',
+        'button(f"Go to {place}", "")',
+        'button("A/B", "Compare")',
+        'label = "Go" if on else "Stop"; imgui.small_button(label)',
+        "imgui.checkbox(LABEL, on)",
+        'bench.notices.say(f"saved {path}")',
+        'imgui.text_disabled(fitting("of all texels", 3))',
+        'with row(tr("Sun"), "Where it is"): pass',
+    ],
+)
+def test_a_forgotten_word_is_found(line):
+    tree = ast.parse(f'LABEL = "On and off"\ndef draw():\n    {line}\n')
+    assert list(words.shown_as_they_are(tree))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'imgui.button(tr("Go on"))',
+        """imgui.button(f"{tr('Go on')}##go on")""",
+        'imgui.drag_float("##seconds", 1.0, 0.1, 0.0, 1.0, "%.2f s")',
+        'imgui.text_unformatted(f"{width} x {height}")',
+        'button("PNG", tr("Save it"))',
+        'notices.say(tr("saved {file}", file="sketch.toml"))',
+    ],
+)
+def test_what_is_translated_or_no_word_is_let_through(line):
+    assert list(words.shown_as_they_are(ast.parse(f"def draw():\n    {line}\n"))) == []
+
+
+def test_templates_have_the_same_names_in_both():
+    def names(text: str) -> list[str]:
+        return sorted({name for _, name, _, _ in string.Formatter().parse(text) if name is not None})
+
+    assert {english for english, french in FRENCH.items() if names(english) != names(french)} == set()
+
+
+def test_french_lines_are_written_as_french():
+    straight = {english for english, french in FRENCH.items() if "'" in french or "\xa0" in french}
+    glued = {english for english, french in FRENCH.items() if re.search(r"\w[;?!»]|«\w|[a-zé]: ", french)}
+    thou = {english for english, french in FRENCH.items() if re.search(r"\b(tu|ton|tes|toi)\b", french)}
+    sketch = {english for english, french in FRENCH.items() if re.search(r"\bsketch", french, re.I)}
+    assert (straight, glued, thou, sketch) == (set(), set(), set(), set())
+
+
+def test_no_french_line_breaks_before_its_colon():
+    choose_language("fr")
+    assert tr("Trace: {spot}", spot="a") == "Trace\xa0: a"
+    assert tr("no parameter of this sketch takes a file like {name}, so it has no place in it", name="a.png")
+
+
+def test_numbers_have_their_plural_in_both():
+    assert [counted(n, "parameter") for n in (0, 1, 3)] == ["0 parameters", "1 parameter", "3 parameters"]
+    choose_language("fr")
+    assert [counted(n, "parameter") for n in (0, 1, 3)] == ["0 paramètre", "1 paramètre", "3 paramètres"]
+    assert counted(2, "locked parameter") == "2 paramètres verrouillés"
+
+
+def test_keys_are_called_as_the_keyboard_calls_them():
+    assert shortcut("Ctrl+Shift+Z, Ctrl+Y") == "Ctrl+Shift+Z, Ctrl+Y"
+    choose_language("fr")
+    assert shortcut("Ctrl+Shift+Z, Ctrl+Y") == "Ctrl+Maj+Z, Ctrl+Y"
+    assert shortcut("Space") == "Espace" and shortcut("/") == "/"
+
+
+def test_an_unknown_language_is_english():
+    assert choose_language("xx") == "en" and language.language() == "en"
