@@ -377,7 +377,7 @@ def note_of(sketch: Sketch, channel: Channel) -> str:
     """Return a tooltip: what feeds a channel."""
     if not is_technique(channel.source):
         spec = sketch.graph.find(channel.feeder)
-        title = spec.technique.title if spec is not None else ""
+        title = tr_label(spec.technique.title) if spec is not None else ""
         what = (
             tr("the pass {source}", source=channel.source)
             if channel.source

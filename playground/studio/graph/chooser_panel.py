@@ -9,7 +9,7 @@ from playground.studio.bench import Workbench
 from playground.studio.draw import await_field, fitting, letters, pushed_id, with_typed_ahead
 from playground.studio.graph.edits import Entry, fit
 from playground.studio.graph.graph import Graph, Wiring
-from playground.studio.language import tr
+from playground.studio.language import tr, tr_label
 from playground.studio.theme import Theme
 
 _WIDE, _HIGH, _ROW = 460.0, 400.0, 46.0
@@ -132,6 +132,6 @@ def _draw_row(entry: Entry, outputs: tuple[str, ...], graph: Graph, look: Theme,
         after = imgui.calc_text_size(name).x
     folder = fitting(entry.use.rpartition("/")[0], max(room - after - 10 * scale, 1.0))
     draw.add_text(ImVec2(x + after + 8 * scale, low.y), theme.packed(palette.dim), folder)
-    title = fitting(entry.title, wide - _PICTURE[0] * scale - 20 * scale)
+    title = fitting(tr_label(entry.title), wide - _PICTURE[0] * scale - 20 * scale)
     draw.add_text(ImVec2(x, low.y + 21 * scale), theme.packed(palette.ink), title)
     return bool(clicked)

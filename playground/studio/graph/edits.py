@@ -17,7 +17,7 @@ from playground.sketch.replace_technique import own_names, reader_of
 from playground.sketch.wiring import input_names, output_names
 from playground.studio.edits.edits import Draft
 from playground.studio.edits.undo import Undo
-from playground.studio.language import tr
+from playground.studio.language import labels_of, tr
 from playground.studio.notices import Notices
 from playground.studio.session import Session
 
@@ -202,7 +202,8 @@ class Catalogue:
         those that take nothing; of equals those with a picture.
         """
         words = search.lower().split()
-        entries = [e for e in self.entries.values() if all(w in f"{e.use} {e.title}".lower() for w in words)]
+        texts = ((e, f"{e.use} {' '.join(labels_of(e.title))}".lower()) for e in self.entries.values())
+        entries = [entry for entry, text in texts if all(word in text for word in words)]
 
         def rank(entry: Entry) -> tuple[object, ...]:
             named = not words or any(entry.name.startswith(word) for word in words)

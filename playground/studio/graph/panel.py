@@ -44,7 +44,7 @@ from playground.studio.graph.chooser_panel import draw_chooser
 from playground.studio.graph.edits import technique_at
 from playground.studio.graph.graph import Graph, Pin, Pull, Wiring, cost_of
 from playground.studio.interface import Tab
-from playground.studio.language import tr
+from playground.studio.language import tr, tr_label
 from playground.studio.picture.view import Place
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -792,7 +792,7 @@ def _tooltip(node: str, session: Session) -> str:
     if spec is not None:
         lines.append(spec.use)
         if spec.technique.title:
-            lines.append(spec.technique.title)
+            lines.append(tr_label(spec.technique.title))
     if plan is not None and spec is not None:
         for output, ref in plan.flat.outputs[node].items():
             step = plan.step(ref.path)

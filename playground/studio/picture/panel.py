@@ -18,7 +18,7 @@ from playground.sketch.assign import values_of
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch
 from playground.studio import theme
 from playground.studio.draw import Area
-from playground.studio.language import tr
+from playground.studio.language import tr, tr_label
 from playground.studio.theme import Theme
 
 _MIN_WIDTH = 48.0  # [units of scale 1] a part that is narrower has no room for a name
@@ -118,7 +118,7 @@ def _titles(sketch: Sketch, source: str, texture: str) -> list[str]:
     titles: list[str] = []
     spec = sketch.graph.find(source.partition(".")[0])
     while spec is not None and len(titles) < len(sketch.graph.passes):
-        titles.append(spec.technique.title)
+        titles.append(tr_label(spec.technique.title))
         before = dict(spec.inputs).get(texture, "")
         spec = sketch.graph.find(before.partition(":")[0].partition(".")[0]) if before else None
     return titles

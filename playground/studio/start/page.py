@@ -12,7 +12,7 @@ from playground.errors import PlaygroundError
 from playground.paths import SKETCHES, shown
 from playground.sketch.templates import make_sketch
 from playground.studio.actions import Actions
-from playground.studio.language import tr
+from playground.studio.language import labels_of, language, tr
 from playground.studio.start.recent import Recent
 from playground.studio.start.thumbnails import SUBJECTS, thumbnails
 
@@ -66,10 +66,15 @@ class StartPage:
     subject: str = ""  # one of ``SUBJECTS``; "": all
     more: Callable[[], Iterable[Card]] = lambda: ()  # the cards of rooms, as lessons
     _cards: list[Card] = field(default_factory=list)
+    _language: str = ""  # of the cards
 
     def open(self) -> None:
         """Show the page, with what is recent now."""
         self.shown, self.search = True, ""
+        self._read_cards()
+
+    def _read_cards(self) -> None:
+        self._language = language()
         self._cards = [*self._recent_cards(), *self._shipped_cards(), *self.more()]
 
     def close(self) -> None:
@@ -85,13 +90,18 @@ class StartPage:
 
     def cards(self, group: str) -> list[Card]:
         """Return the cards of a group that fit the search and the subject."""
+        if self._language != language():
+            self._read_cards()
         words = self.search.casefold().split()
         return [
             card
             for card in self._cards
             if card.group == group
             and (not self.subject or not card.subject or card.subject == self.subject)
-            and all(word in f"{card.title} {card.words} {card.note}".casefold() for word in words)
+            and all(
+                word in f"{' '.join(labels_of(card.title))} {card.words} {card.note}".casefold()
+                for word in words
+            )
         ]
 
     def subjects(self) -> Sequence[str]:

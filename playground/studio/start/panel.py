@@ -14,7 +14,7 @@ from playground.allowed_files import ELEVATIONS, SHADERS
 from playground.studio import theme
 from playground.studio.draw import QUIET, button, explain, fitting, menu, window
 from playground.studio.interface import Interface
-from playground.studio.language import tr
+from playground.studio.language import tr, tr_label
 from playground.studio.settings_panel import draw_settings, settings_label
 from playground.studio.start.page import TEMPLATES, Card, StartPage, Template, has_file_dialogs
 from playground.studio.start.thumbnails import CELL, place_of, read_atlas, read_picture
@@ -201,7 +201,7 @@ class StartPanel:
         clicked = imgui.invisible_button(card.key, size, imgui.ButtonFlags_.enable_nav)
         lit = imgui.is_item_hovered() or imgui.is_item_focused()
         if card.note and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
-            explain(card.title, card.note)
+            explain(tr_label(card.title), card.note)
         far, radius = ImVec2(corner.x + size.x, corner.y + size.y), 6 * look.scale
         ground = theme.palette.raised if lit else theme.palette.field
         draw.add_rect_filled(corner, far, theme.packed(ground), radius)
@@ -223,7 +223,7 @@ class StartPanel:
             )
         if lit:
             draw.add_rect(corner, far, theme.packed(theme.palette.accent), radius, 2 * look.scale)
-        text = fitting(card.title, size.x - 16 * look.scale)
+        text = fitting(tr_label(card.title), size.x - 16 * look.scale)
         place = ImVec2(low.x + 8 * look.scale, low.y + 4 * look.scale)
         draw.add_text(place, theme.packed(theme.palette.ink), text)
         if clicked:
