@@ -60,7 +60,7 @@ def counted(number: int, noun: str) -> str:
 
 def shortcut(keys: str) -> str:
     """Return the keys of a shortcut as keyboards of the language have them: "Ctrl+Shift+Z", "Ctrl+Maj+Z"."""
-    return re.sub(r"[A-Z]\w+", lambda word: tr(word[0]), keys)
+    return re.sub(r"[A-Z][a-z]\w+", lambda word: tr(word[0]), keys)
 
 
 @cache

@@ -30,7 +30,7 @@ PARAMETER = words.ROOT / "shader" / "parameter.py"  # says what a parameter take
 
 def tables() -> set[str]:
     """Return the words that stand in tables, and are translated where they are shown."""
-    found = {word for keys in all_keys() for word in re.findall(r"[A-Z]\w+", keys.name)}
+    found = {word for keys in all_keys() for word in words.KEY.findall(keys.name)}
     found |= {word for key in all_keys() for word in (key.meaning, key.brief)}
     found |= {word for gesture in GESTURES for word in gesture}
     found |= {*TOOLS, *KINDS, WALL, QUERY, *(mode.value for mode in (*Mode, *Beside))}

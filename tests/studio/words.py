@@ -65,6 +65,8 @@ SHOW = {
     ),
 }
 """The functions that show the words that they are given, or remember them to be shown."""
+KEY = re.compile(r"[A-Z][a-z]\w+")
+"""A key in a shortcut whose name is a word."""
 NAMES = {"menu": {1}, "report_once": {0}, "step": {1}, "slot_button": {0}, "cross": {0}}
 """Which of a function's arguments is a name that nobody sees."""
 READ = {"get", "split", "partition", "rpartition", "join", "value", "getattr", "removesuffix", "replace"}
@@ -72,7 +74,7 @@ READ = {"get", "split", "partition", "rpartition", "join", "value", "getattr", "
 
 _EXCUSED = re.compile(
     r"([^a-zA-Z]|\b[A-Z]\b)*"  # marks, numbers, A and B
-    r"|(Ctrl\+)?[A-Z]?[A-Z0-9,.]"  # keys that each keyboard calls so
+    r"|(Ctrl\+)?(F\d+|[A-Z0-9,.]|Aa)"  # keys that each keyboard calls so
     r"|[A-Z/-]{2,}[\W\d]*"  # PNG, MIDI
     r"|(glsl/|map\.)[\W\d]*"  # paths
     r"|0+-?[a-z]+"  # names of widgets, after that of their row
@@ -111,7 +113,7 @@ def translated(tree: ast.AST, function: str = "tr") -> Iterator[str]:
             case name, [ast.Constant(str(words)), *_] if name == function:
                 yield words
             case "shortcut", [ast.Constant(str(keys))]:
-                yield from re.findall(r"[A-Z]\w+", keys)
+                yield from KEY.findall(keys)
             case "counted", [_, noun]:
                 nouns = [word.value for word in ast.walk(noun) if isinstance(word, ast.Constant)]
                 yield from (form for word in nouns for form in (word, f"{word}s"))
@@ -122,7 +124,7 @@ def strings(tree: ast.AST) -> Iterator[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             yield node.value
-            yield from re.findall(r"[A-Z]\w+", node.value)
+            yield from KEY.findall(node.value)
 
 
 def shown_as_they_are(tree: ast.Module) -> Iterator[tuple[int, str]]:
