@@ -117,6 +117,15 @@ def buttons(*row: tuple[str, str, Callable[[], object], bool], small: bool = Fal
             act()
 
 
+def next_in_row(label: str) -> None:
+    """Go on in the same line, where a button of this label has room in it."""
+    style = imgui.get_style()
+    edge = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+    wide = imgui.calc_text_size(label, True).x + 2 * style.frame_padding.x + style.item_spacing.x
+    if imgui.get_item_rect_max().x + wide <= edge:
+        imgui.same_line()
+
+
 def tooltip_waits() -> bool:
     """Return whether the mouse is over an item whose tooltip is still to come: frames count its delay."""
     context, style = imgui.get_current_context(), imgui.get_style()

@@ -6,8 +6,10 @@ import ast
 import re
 import string
 import tomllib
+from collections.abc import Callable, Iterator
 
 import pytest
+from imgui_bundle import imgui
 
 from playground import rooms
 from playground.engine.gl_calls import QUERY, WALL
@@ -16,12 +18,16 @@ from playground.studio import language
 from playground.studio.addition import Addition
 from playground.studio.compare.compare import Mode
 from playground.studio.keys import GESTURES, all_keys
-from playground.studio.language import choose_language, counted, shortcut, tr
+from playground.studio.language import LANGUAGES, choose_language, counted, shortcut, tr
 from playground.studio.paint.brush import TOOLS
+from playground.studio.panel.parameter_list import Filter, filtered
 from playground.studio.remote.controllers import KINDS
+from playground.studio.theme import PANEL_WIDTH
 from playground.studio.trace.tracing import Beside
 
+from ..sketch_texts import map_of, passes
 from . import words
+from .panel_desk import Bare
 
 FILE = words.ROOT / "studio" / "french.toml"
 FRENCH: dict[str, str] = tomllib.loads(FILE.read_text("utf-8"))
@@ -43,25 +49,25 @@ def tables() -> set[str]:
 
 
 @pytest.fixture(autouse=True)
-def in_english():
+def in_english() -> Iterator[None]:
     yield
     choose_language("en")
 
 
-def test_each_translated_word_has_a_french_line():
+def test_each_translated_word_has_a_french_line() -> None:
     said = {word for _, tree in words.trees() for word in words.translated(tree)}
     said |= set(words.translated(ast.parse(PARAMETER.read_text("utf-8")), "say")) | tables()
     assert len(said) > 600
     assert sorted(said - FRENCH.keys()) == []
 
 
-def test_no_french_line_is_left_over():
+def test_no_french_line_is_left_over() -> None:
     there = {text for _, tree in words.trees() for text in (*words.strings(tree), *words.translated(tree))}
     there |= set(words.strings(ast.parse(PARAMETER.read_text("utf-8")))) | tables()
     assert sorted(FRENCH.keys() - there) == []
 
 
-def test_no_word_is_shown_as_it_stands():
+def test_no_word_is_shown_as_it_stands() -> None:
     shown = [(path, each) for path, tree in words.trees() for each in words.shown_as_they_are(tree)]
     places = [f"{path.relative_to(words.ROOT)}:{line}: {text!r}" for path, (line, text) in shown]
     assert sorted(set(places)) == [], "put them into tr(...)"
@@ -81,7 +87,7 @@ def test_no_word_is_shown_as_it_stands():
         'with row(tr("Sun"), "Where it is"): pass',
     ],
 )
-def test_a_forgotten_word_is_found(line):
+def test_a_forgotten_word_is_found(line: str) -> None:
     tree = ast.parse(f'LABEL = "On and off"\ndef draw():\n    {line}\n')
     assert list(words.shown_as_they_are(tree))
 
@@ -97,18 +103,18 @@ def test_a_forgotten_word_is_found(line):
         'notices.say(tr("saved {file}", file="sketch.toml"))',
     ],
 )
-def test_what_is_translated_or_no_word_is_let_through(line):
+def test_what_is_translated_or_no_word_is_let_through(line: str) -> None:
     assert list(words.shown_as_they_are(ast.parse(f"def draw():\n    {line}\n"))) == []
 
 
-def test_templates_have_the_same_names_in_both():
+def test_templates_have_the_same_names_in_both() -> None:
     def names(text: str) -> list[str]:
         return sorted({name for _, name, _, _ in string.Formatter().parse(text) if name is not None})
 
     assert {english for english, french in FRENCH.items() if names(english) != names(french)} == set()
 
 
-def test_french_lines_are_written_as_french():
+def test_french_lines_are_written_as_french() -> None:
     straight = {english for english, french in FRENCH.items() if "'" in french or "\xa0" in french}
     glued = {english for english, french in FRENCH.items() if re.search(r"\w[;?!»]|«\w|[a-zé]: ", french)}
     thou = {english for english, french in FRENCH.items() if re.search(r"\b(tu|ton|tes|toi)\b", french)}
@@ -116,25 +122,92 @@ def test_french_lines_are_written_as_french():
     assert (straight, glued, thou, sketch) == (set(), set(), set(), set())
 
 
-def test_no_french_line_breaks_before_its_colon():
+def test_no_french_line_breaks_before_its_colon() -> None:
     choose_language("fr")
     assert tr("Trace: {spot}", spot="a") == "Trace\xa0: a"
     assert tr("no parameter of this sketch takes a file like {name}, so it has no place in it", name="a.png")
 
 
-def test_numbers_have_their_plural_in_both():
+def test_numbers_have_their_plural_in_both() -> None:
     assert [counted(n, "parameter") for n in (0, 1, 3)] == ["0 parameters", "1 parameter", "3 parameters"]
     choose_language("fr")
     assert [counted(n, "parameter") for n in (0, 1, 3)] == ["0 paramètre", "1 paramètre", "3 paramètres"]
     assert counted(2, "locked parameter") == "2 paramètres verrouillés"
 
 
-def test_keys_are_called_as_the_keyboard_calls_them():
+def test_keys_are_called_as_the_keyboard_calls_them() -> None:
     assert shortcut("Ctrl+Shift+Z, Ctrl+Y") == "Ctrl+Shift+Z, Ctrl+Y"
     choose_language("fr")
     assert shortcut("Ctrl+Shift+Z, Ctrl+Y") == "Ctrl+Maj+Z, Ctrl+Y"
     assert shortcut("Space") == "Espace" and shortcut("/") == "/"
 
 
-def test_an_unknown_language_is_english():
+def test_an_unknown_language_is_english() -> None:
     assert choose_language("xx") == "en" and language.language() == "en"
+
+
+FILES = {
+    "sketch.toml": """format = 1
+title = "Diamond-square"
+size = 17
+main = ["height.octaves"]
+"""
+    + passes(height=("./height", "set = { left = 1 }"))
+    + map_of("height")
+    + """[[preset]]
+name = "one with a long name of its own"
+set = { "height.octaves" = 3 }
+""",
+    "height.glsl": """// height.glsl -- hills
+#pragma kernel(output = "height:r32f")
+uniform int octaves = 5; //! slider(1, 9) group("Detail") How many
+uniform int left = 0; //! menu("smooth", "ridged") What they are like
+float kernel(ivec2 texel) { return float(octaves + left) / 10.0; }
+""",
+}
+
+
+def labels_drawn(bare: Bare) -> set[str]:
+    bare.places.clear()
+    bare.run_frames()
+    return {label.partition("##")[0] for label in bare.places}
+
+
+def test_a_language_takes_effect_at_once(bare: Bare) -> None:
+    assert {"Undo", "Save", "Main parameters"} <= labels_drawn(bare)
+    choose_language("fr")
+    assert {"Annuler", "Enregistrer", "Paramètres principaux"} <= labels_drawn(bare)
+    assert not {"Undo", "Save", "Main parameters"} & labels_drawn(bare)
+    choose_language("en")
+    assert "Undo" in labels_drawn(bare)
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+@pytest.mark.parametrize("wide", [240.0, PANEL_WIDTH])
+def test_no_button_of_the_panel_is_cut_off(bare: Bare, code: str, wide: float) -> None:
+    choose_language(code)
+    bare.panel.width = wide
+    sizes: dict[str, float] = {}
+
+    def measure(draw: Callable[[], object]) -> None:
+        draw()
+        sizes.update((label, imgui.calc_text_size(label, True).x) for label in bare.places)
+
+    bare.run_frames(2)
+    bare.places.clear()
+    bare.run_frames(1, measure)
+    drawn = {label: place for label, place in bare.places.items() if place[0] < wide}
+    assert tr("Random") in drawn and tr("Trace") in drawn
+    assert {label for label, (x, _, width, _) in drawn.items() if x + width > wide} == set()
+    buttons = [tr(label) for label in ("Undo", "History", "Save", "Graph", "Trace")]
+    assert all(sizes[label] <= drawn[label][2] for label in buttons)
+
+
+def test_a_parameter_is_found_by_its_label_in_both(bare: Bare) -> None:
+    draft = bare.session.shown
+    assert draft is not None
+    for search in ("octaves", "gauche", "left", "détail", "hauteur", "height"):
+        found = {item.path for section in filtered(draft, Filter(search)).values() for item in section.items}
+        assert found, search
+    assert {i.path for s in filtered(draft, Filter("gauche")).values() for i in s.items} == {"height.left"}
+    assert not filtered(draft, Filter("droite"))

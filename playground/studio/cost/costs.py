@@ -129,9 +129,38 @@ class RunReasons:
         inside = [path for path in self._latest if path == node or path.startswith(f"{node}.")]
         lines = [
             (tr("Last ran: {why}") if path == node else tr("{path} last ran: {why}")).format(
-                path=path[len(node) + 1 :], why=why(*self._latest[path])
+                path=path[len(node) + 1 :], why=_in_words(why(*self._latest[path]))
             )
             for path in inside[:_MAX_LINES]
         ]
         more = len(inside) - len(lines)
         return "\n".join([*lines, tr("and {more} more", more=more)] if more else lines)
+
+
+_REASONS = (
+    "the pass",
+    "its textures were dropped",
+    "iterations of its loop",
+    "text",
+    "driver",
+    "size",
+    "window",
+    "repeat",
+    "iterations",
+    "continued",
+    "between",
+    "file",
+    "value",
+    "given",
+    "input",
+)
+"""How the engine's reasons are called, before the names in them."""
+
+
+def _in_words(reasons: str) -> str:
+    """Return the engine's reasons in the language that is in use: "value amplitude", "input height"."""
+    words = []
+    for reason in reasons.split(", "):
+        kind = next((kind for kind in _REASONS if f"{reason} ".startswith(f"{kind} ")), "")
+        words.append(tr(kind) + reason.removeprefix(kind))
+    return ", ".join(words)

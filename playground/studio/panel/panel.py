@@ -34,6 +34,7 @@ from playground.studio.draw import (
     inked,
     letters,
     menu,
+    next_in_row,
     row,
     styled,
     with_typed_ahead,
@@ -93,7 +94,7 @@ class Panel:
         if sketch is not None:
             draw_paintbox(bench.painting)
             draw_search(self.memory, bench.interface.ahead)
-        footer = _footer_lines(bench.session.orbits)
+        footer = _footer_lines(bench.session.orbits, look)
         bar = imgui.WindowFlags_.always_vertical_scrollbar if sketch is not None else 0
         imgui.begin_child("sections", ImVec2(0, -_footer_height(footer, look)), 0, bar)
         if bench.inspection.costs_asked:
@@ -130,10 +131,16 @@ def _map(session: Session, inspection: Inspection, look: Theme) -> None:
     draw_spread(session, inspection, look)
 
 
-def _footer_lines(orbits: bool) -> tuple[str, str]:
-    """Return the lines at the bottom: what the mouse does, and the keys used most."""
+def _footer_lines(orbits: bool, look: Theme) -> tuple[str, str]:
+    """Return the lines at the bottom: what the mouse does, and the keys used most, none broken in itself."""
     mouse = tr("Drag to orbit, Shift to pan, Ctrl for the sun, wheel to zoom") if orbits else ""
-    return mouse, "   ".join(f"{shortcut(key.name)} {tr(key.brief)}" for key in all_keys() if key.brief)
+    lines, wide = [""], imgui.get_content_region_avail().x
+    with look.font(look.text, theme.SMALL):
+        for key in filter(lambda key: key.brief, all_keys()):
+            text = f"{shortcut(key.name)} {tr(key.brief)}"
+            longer = f"{lines[-1]}   {text}".strip()
+            lines[-1:] = [longer] if imgui.calc_text_size(longer).x <= wide else [lines[-1], text]
+    return mouse, "\n".join(lines)
 
 
 def _footer_height(lines: tuple[str, str], look: Theme) -> float:
@@ -209,7 +216,7 @@ def _about(memory: PanelState, paragraphs: list[str], file: str) -> None:
 
 
 def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
-    """Draw two lines of buttons, closer than elsewhere: so both fit."""
+    """Draw rows of buttons, closer than elsewhere; in a narrow panel they take more rows."""
     style, closer = imgui.get_style(), _CLOSER * look.scale
     padding, spacing = style.frame_padding, style.item_spacing
     sizes: dict[imgui.StyleVar_, float | ImVec2] = {
@@ -218,28 +225,29 @@ def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
     }
     with styled(sizes=sizes):
         _undo(memory, bench.undo, look)
-        imgui.same_line()
+        next_in_row(tr("Random"))
         _randomise(memory, bench.actions)
-        imgui.same_line()
+        next_in_row("A/B")
         if button("A/B", tr("Keep this as A, go on with B, and compare the two; or no longer (A)")):
             bench.inspection.compare.toggle()
-        imgui.same_line()
+        next_in_row(tr("Reset"))
         _resets(bench.actions)
+        next_in_row(tr("Copy"))
         _copies(memory, bench.actions)
-        imgui.same_line()
+        next_in_row(tr("Save"))
         _saves(memory, bench.actions)
-        imgui.same_line()
+        next_in_row("PNG")
         if button("PNG", tr("Save the picture as a new file in {folder} (S)", folder=bench.actions.folder)):
             bench.actions.save_picture()
-        imgui.same_line()
+        next_in_row(tr("Graph"))
         if button(tr("Graph"), tr("The passes as a graph, or no longer (G)")):
             bench.toggle_passes()
-        imgui.same_line()
+        next_in_row(tr("Trace"))
         if button(
             tr("Trace"), tr("Every value of the texel under the mouse beside the code, or no longer (T)")
         ):
             bench.tracing.toggle()
-        imgui.same_line()
+        next_in_row(tr("Code"))
         if button(f"{tr('Code')}###code", tr("The sketch's text beside the picture, or no longer (Ctrl+E)")):
             bench.toggle_code()
 

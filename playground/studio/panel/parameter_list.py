@@ -157,7 +157,8 @@ def sections_of(sketch: Sketch) -> tuple[Section, ...]:
 
 def _item(sketch: Sketch, shown: Shown) -> Item:
     p = shown.parameter
-    labels = *labels_of(p.title), *labels_of(p.group)
+    names = p.title, p.group, label_of(shown.path.partition(".")[0])
+    labels = [label for name in names for label in labels_of(name)]
     words = " ".join([*labels, shown.path, shown.path.replace("_", " "), p.tooltip]).lower()
     leaf = resolve(sketch.graph, shown.path)[0].path
     return Item(shown.path, p, leaf, shown.exported, words, f"##{shown.path}", p.title)
@@ -180,7 +181,7 @@ def _main_items(sketch: Sketch, _: str) -> tuple[Item, ...]:
     titles = [_with_group(item.parameter) for item in result]
     for item, title in zip(result, titles, strict=True):
         if titles.count(title) > 1:
-            title = _under(label_of(item.path.partition(".")[0]), title)
+            title = _under(tr_label(label_of(item.path.partition(".")[0])), title)
         made.append(replace(item, label=f"##main {item.path}", title=title))
     return tuple(made)
 

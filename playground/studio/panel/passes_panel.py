@@ -322,7 +322,7 @@ class _Drawing:
         flags = imgui.TreeNodeFlags_.allow_overlap
         if opened:
             flags |= imgui.TreeNodeFlags_.default_open
-        unfolded = header(f"{label_of(spec.name)}###pass", look, flags)
+        unfolded = header(f"{tr_label(label_of(spec.name))}###pass", look, flags)
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         text, ran, spent = cost_of(session, spec.name)
         if session.engine.options.profiling and spent is not None:
@@ -334,7 +334,8 @@ class _Drawing:
             position, theme.packed(theme.palette.accent if ran else theme.palette.dim), text
         )
         if imgui.is_item_hovered():
-            lines = [tr("How often its kernels ran; green: for this very picture")]
+            lines = [tr("pass {name}", name=spec.name)]
+            lines += [tr("How often its kernels ran; green: for this very picture")]
             lines += [self.reasons.text(spec.name), tr("Right click: its files")]
             imgui.set_tooltip("\n".join(filter(None, lines)))
         _files(spec, self.files)

@@ -86,7 +86,8 @@ def _named(sketch: Sketch, view: PassSpec, graph: Graph, divide: PassSpec) -> tu
     if not differing:
         return [], []
     names = [
-        tr(" and ").join(label_of(sources[name].partition(".")[0]) for name in differing) for sources in own
+        tr(" and ").join(tr_label(label_of(sources[name].partition(".")[0])) for name in differing)
+        for sources in own
     ]
     return names, _methods(sketch, [sources[differing[0]] for sources in own], differing[0])
 

@@ -12,7 +12,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import PlaygroundError
 from playground.studio import theme
-from playground.studio.draw import button, explain, fitting, pushed_id
+from playground.studio.draw import button, explain, fitting, next_in_row, pushed_id
 from playground.studio.interface import Tab
 from playground.studio.language import tr
 from playground.studio.start.thumbnails import CELL, read_picture
@@ -127,15 +127,15 @@ class VersionsPanel:
             ("As a new sketch", "as new", "A copy in a folder of its own, opened", versions.as_new_sketch),
             ("Remove", "remove", "Take it from the list", versions.remove),
         ):
-            _next(tr(label))
+            next_in_row(tr(label))
             if button(f"{tr(label)}###{key}", tr(note)):
                 act(chosen)
-        _next(tr("To the present"))
+        next_in_row(tr("To the present"))
         if button(f"{tr('To the present')}###present", tr("End looking: what is worked on is shown again")):
             self.versions.leave()
         if versions.is_looking:
             text = tr("only looked at")
-            _next(text)
+            next_in_row(text)
             imgui.text_colored(theme.colour(theme.palette.warm), text)
             imgui.set_item_tooltip(tr("The files are as they were; nothing is written"))
 
@@ -214,15 +214,6 @@ class VersionsPanel:
         texture = self._ctx.texture((pixels.shape[1], pixels.shape[0]), 3, pixels.tobytes(), alignment=1)
         texture.filter = moderngl.LINEAR, moderngl.LINEAR
         return texture
-
-
-def _next(label: str) -> None:
-    """Go on in the same line, where a button of this label has room in it."""
-    style = imgui.get_style()
-    edge = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
-    wide = imgui.calc_text_size(label).x + 2 * style.frame_padding.x + style.item_spacing.x
-    if imgui.get_item_rect_max().x + wide <= edge:
-        imgui.same_line()
 
 
 def _draw_star(draw: imgui.ImDrawList, middle: ImVec2, radius: float) -> None:
