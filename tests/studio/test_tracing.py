@@ -98,19 +98,19 @@ def trace_at(tracing: Tracing, texel: tuple[int, int]) -> None:
 
 def view_rows(tracing: Tracing) -> tuple[Row, ...]:
     assert tracing.view is not None
-    return tracing.view.rows(tracing.file)
+    return tracing.view.rows(tracing.caret.file)
 
 
 def value(tracing: Tracing, line: int, name: str) -> str:
     assert tracing.view is not None
-    (item,) = [item for item in tracing.view.rows(tracing.file)[line - 1].items if item.name == name]
+    (item,) = [item for item in tracing.view.rows(tracing.caret.file)[line - 1].items if item.name == name]
     return item.text
 
 
 def test_the_texel_under_the_mouse_is_traced(begin: Begin) -> None:
     tracing = begin()
     trace_at(tracing, (5, 1))
-    assert tracing.spot == Spot("height", (5, 1)) and Path(tracing.file).name == "terrain.glsl"
+    assert tracing.spot == Spot("height", (5, 1)) and Path(tracing.caret.file).name == "terrain.glsl"
     assert float(value(tracing, ADD, "sum")) == pytest.approx(3 * HARMONIC, rel=1e-3)
     assert tracing.view is not None and tracing.view.trace.is_exact
     trace_at(tracing, (4, 0))
@@ -120,9 +120,9 @@ def test_the_texel_under_the_mouse_is_traced(begin: Begin) -> None:
 def test_nothing_is_traced_again_while_nothing_changes(begin: Begin) -> None:
     tracing = begin()
     trace_at(tracing, (5, 1))
-    before = tracing.traces
+    before = tracing.last.count
     frame(tracing, 5)
-    assert tracing.traces == before and tracing.patience > 1e9
+    assert tracing.last.count == before and tracing.patience > 1e9
 
 
 def test_a_pinned_texel_stays_until_the_mouse_is_followed(begin: Begin) -> None:
@@ -145,8 +145,8 @@ def test_values_follow_a_save_and_stand_beside_those_before(begin: Begin, folder
     frame(tracing, 4)
     assert float(value(tracing, ADD, "sum")) == pytest.approx(3 * (HARMONIC - 1 + 1 / 5), rel=1e-3)
     tracing.go_to_difference()
-    assert tracing.view is not None and tracing.line == ADD
-    (item,) = [i for i in tracing.view.rows(tracing.file)[ADD - 1].items if i.parts]
+    assert tracing.view is not None and tracing.caret.line == ADD
+    (item,) = [i for i in tracing.view.rows(tracing.caret.file)[ADD - 1].items if i.parts]
     assert (item.text, item.other) == ("1.5", "3"), "the first of the four sums"
 
 
@@ -156,7 +156,7 @@ def test_a_kept_trace_stands_beside_that_of_another_texel(begin: Begin) -> None:
     tracing.keep()
     trace_at(tracing, (6, 1))
     assert tracing.view is not None
-    row = tracing.view.rows(tracing.file)[ADD - 1]
+    row = tracing.view.rows(tracing.caret.file)[ADD - 1]
     assert [item.other for item in row.items] == [f"{3 * HARMONIC:.4g}"]
     assert "kept" in state_of(tracing)[0]
 
@@ -175,7 +175,7 @@ def test_a_number_that_is_not_finite_is_gone_to(begin: Begin) -> None:
     tracing.trace_not_finite(NotFinite("height", "height", (1, 4), "NaN", 4, (9, 6)))
     tracing.point((0, 0))
     frame(tracing, 3)
-    assert tracing.on and tracing.line == ROOT and value(tracing, ROOT, "root") == "NaN"
+    assert tracing.on and tracing.caret.line == ROOT and value(tracing, ROOT, "root") == "NaN"
     trace_at_finite = Spot("height", (5, 1))
     tracing.follow()
     tracing.point(pixel_of(trace_at_finite.texel))
@@ -191,14 +191,14 @@ def test_nothing_is_traced_before_the_sandbox_has_compiled_it(begin: Begin) -> N
     frame(tracing, 4)
     (request,) = compiler.requests
     assert isinstance(request, TryTrace) and request.path == "height"
-    assert tracing.view is None and tracing.compiling == "height" and tracing.patience < 1
+    assert tracing.view is None and tracing.compiler.compiles == "height" and tracing.patience < 1
     compiler.answer = SandboxReport(True)
     frame(tracing, 2)
-    assert tracing.view is not None and not tracing.compiling
-    trace = tracing.traces
+    assert tracing.view is not None and not tracing.compiler.compiles
+    trace = tracing.last.count
     tracing.pin_at(pixel_of((6, 1)), SIZE)
     frame(tracing, 4)
-    assert tracing.traces > trace and len(compiler.requests) == 1, "another texel needs no compiler"
+    assert tracing.last.count > trace and len(compiler.requests) == 1, "another texel needs no compiler"
 
 
 def test_what_the_sandbox_could_not_run_is_never_run_here(begin: Begin) -> None:
@@ -213,7 +213,7 @@ def test_what_the_sandbox_could_not_run_is_never_run_here(begin: Begin) -> None:
         assert tracing.view is None and "10 s" in tracing.message
     tracing.record("kernel")
     frame(tracing, 2)
-    assert tracing.compiling, "another text may do"
+    assert tracing.compiler.compiles, "another text may do"
 
 
 def test_a_trace_changes_neither_picture_nor_counters(begin: Begin) -> None:
@@ -233,13 +233,13 @@ def test_a_trace_changes_neither_picture_nor_counters(begin: Begin) -> None:
     tracing.toggle()
     for texel in (5, 1), (1, 4), (7, 3):
         trace_at(tracing, texel)
-    assert state() == before and tracing.traces >= 3
+    assert state() == before and tracing.last.count >= 3
 
 
 def test_a_probe_is_shown_as_a_map_with_its_own_range(begin: Begin) -> None:
     tracing = begin()
     trace_at(tracing, (5, 1))
-    tracing.line, tracing.expression = ADD, "sum"
+    tracing.caret.line, tracing.probe.expression = ADD, "sum"
     tracing.show_probe()
     frame(tracing, 3)
     assert tracing.spot == Spot("height", (5, 1)) and tracing.is_pinned, "the texel stays"
@@ -258,7 +258,7 @@ def test_a_probe_is_shown_as_a_map_with_its_own_range(begin: Begin) -> None:
 def test_the_first_texel_where_a_condition_holds_is_traced(begin: Begin) -> None:
     tracing = begin()
     trace_at(tracing, (0, 0))
-    tracing.line, tracing.expression = ADD, "sum > 3.9"  # x = 2: its sums are 2, 3, 3.67, 4.17
+    tracing.caret.line, tracing.probe.expression = ADD, "sum > 3.9"  # x = 2: its sums are 2, 3, 3.67, 4.17
     tracing.show_probe(find=True)
     frame(tracing, 5)
     assert tracing.spot == Spot("height", (4, 0)) and tracing.is_pinned
@@ -268,11 +268,11 @@ def test_the_first_texel_where_a_condition_holds_is_traced(begin: Begin) -> None
     assert mark is not None
     pixel = int(mark[0] * SIZE[0]), int(mark[1] * SIZE[1])
     assert texel_of_map(pixel, SIZE, (9, 6)) == (4, 0), "a cross stands there"
-    assert "run 4" in tracing.probe_message and "20 texels" in tracing.probe_message  # 5 columns, 4 rows
-    tracing.expression = "sum > 100.0"
+    assert "run 4" in tracing.probe.message and "20 texels" in tracing.probe.message  # 5 columns, 4 rows
+    tracing.probe.expression = "sum > 100.0"
     tracing.show_probe(find=True)
     frame(tracing, 5)
-    assert "every texel" in tracing.probe_message and tracing.spot == Spot("height", (4, 0))
+    assert "every texel" in tracing.probe.message and tracing.spot == Spot("height", (4, 0))
 
 
 def test_another_sketch_begins_with_nothing_chosen(begin: Begin, tmp_path: Path) -> None:
@@ -285,7 +285,7 @@ def test_another_sketch_begins_with_nothing_chosen(begin: Begin, tmp_path: Path)
         (tmp_path / "other" / name).write_text(text, encoding="utf-8")
     tracing.session.open(tmp_path / "other")
     frame(tracing, 3)
-    assert not tracing.is_pinned and tracing.kept is None and tracing.other() is None
+    assert not tracing.is_pinned and tracing.compared.kept is None and tracing.other() is None
     assert "nothing is kept" in state_of(tracing)[0]
 
 
@@ -295,9 +295,9 @@ def test_another_sketch_begins_with_nothing_chosen(begin: Begin, tmp_path: Path)
 def test_what_is_no_probe_says_why(begin: Begin, line: int, expression: str, named: str) -> None:
     tracing = begin()
     trace_at(tracing, (0, 0))
-    tracing.line, tracing.expression = line, expression
+    tracing.caret.line, tracing.probe.expression = line, expression
     tracing.show_probe()
-    assert named in tracing.probe_message and not isinstance(tracing.session.view.map, ProbeMap)
+    assert named in tracing.probe.message and not isinstance(tracing.session.view.map, ProbeMap)
 
 
 @pytest.mark.parametrize(
@@ -322,21 +322,21 @@ def test_a_probe_that_does_not_compile_leaves_the_picture(begin: Begin) -> None:
     frame(tracing, 2)
     compiler.answer = SandboxReport(True)
     frame(tracing, 2)
-    tracing.line, tracing.expression = ADD, "summ"
+    tracing.caret.line, tracing.probe.expression = ADD, "summ"
     tracing.show_probe()
     assert isinstance(compiler.requests[-1], TrySketch)
     compiler.answer = SandboxReport(False, SandboxTimeout("'summ' undeclared"))
     frame(tracing, 2)
-    assert "summ" in tracing.probe_message and not isinstance(tracing.session.view.map, ProbeMap)
+    assert "summ" in tracing.probe.message and not isinstance(tracing.session.view.map, ProbeMap)
 
 
 @pytest.mark.parametrize("wide", [950.0, 420.0])
 def test_the_window_draws_all_that_a_trace_may_have(bare: Bare, wide: float) -> None:
     tracing, panel, draw = bare.bench.tracing, TracePanel(), bare.draw
-    tracing.on, tracing.file, tracing.line = True, FILE, 4
-    tracing.kept, tracing.beside = march_trace(factor=3.0), Beside.KEPT
-    tracing.view = TraceView(march_trace(), other=tracing.kept)
-    tracing.probe_message, tracing.expression = "the map shows far behind line 4", "far"
+    tracing.on, tracing.caret.file, tracing.caret.line = True, FILE, 4
+    tracing.compared.kept, tracing.compared.beside = march_trace(factor=3.0), Beside.KEPT
+    tracing.view = TraceView(march_trace(), other=tracing.compared.kept)
+    tracing.probe.message, tracing.probe.expression = "the map shows far behind line 4", "far"
 
     def with_trace() -> None:
         draw()
@@ -348,7 +348,7 @@ def test_the_window_draws_all_that_a_trace_may_have(bare: Bare, wide: float) -> 
     tracing.go_to(event)
     bare.run_frames(3)
     bare.click("≠ First difference")
-    assert tracing.line in (4, 5)
+    assert tracing.caret.line in (4, 5)
     bare.click("##slide", 0.0)  # of the first in sight: the calls of march
     assert tracing.view.selection.calls and tracing.view.rows(FILE)[0].head is not None
     start = tracing.view.rows(FILE)[0].head.number
@@ -383,12 +383,12 @@ def test_the_window_of_a_trace_draws_and_esc_closes_it(bare: Bare) -> None:
     bare.draw = with_trace
     bare.key(imgui.Key.t)
     assert bench.tracing.on and "move the mouse" in title_of(bench.tracing)
-    bench.tracing.pin = 0.5, 0.3
+    bench.tracing.choice.pin = 0.5, 0.3
     bare.run_frames(4)
     assert bench.tracing.view is not None and "bit for bit" in state_of(bench.tracing)[0]
     assert {"Keep", "##slide", "##probe"} <= set(bare.places)
     bare.click("Keep")
-    assert bench.tracing.beside is Beside.KEPT
+    assert bench.tracing.compared.beside is Beside.KEPT
     assert open_layers(bench) == ["trace"]
     close_one(bench)
     assert not bench.tracing.on

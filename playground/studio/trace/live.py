@@ -49,7 +49,7 @@ class LiveTexelFile:
             sketch=str(session.path.absolute()),
             path=trace.step,
             texel=trace.texel,
-            iteration=tracing.iteration,
+            iteration=tracing.choice.iteration,
             size=plan.frame_size,
             time=plan.time,
             values=(*((("size", side),) if side is not None else ()), *session.sketch.overrides),

@@ -119,13 +119,8 @@ class TracePanel:
             tracing.keep()
         _flow(wide)
         imgui.set_next_item_width(wide)
-        beside = choose(
-            "##beside",
-            tr("beside: {name}", name=_beside(tracing.beside)),
-            Beside,
-            tracing.beside,
-            name=_beside,
-        )
+        now = tracing.compared.beside
+        beside = choose("##beside", tr("beside: {name}", name=_beside(now)), Beside, now, name=_beside)
         if beside is not None:
             tracing.compare(beside)
         if view is not None and tracing.other() is not None:
@@ -146,7 +141,7 @@ class TracePanel:
         chosen = choose(
             "##pass",
             spot.path if spot is not None else tr("pass"),
-            tracing.spots,
+            tracing.under.spots,
             spot,
             name=lambda each: f"{each.path}   {each.texel[0]}, {each.texel[1]}",
             flags=imgui.ComboFlags_.height_large,
@@ -159,10 +154,11 @@ class TracePanel:
         view = tracing.view
         names = [*view.trace.others, *view.trace.functions] if view is not None else []
         options: list[str | None] = [None, "all", *dict.fromkeys(names)]
-        chosen = _function_name(tracing.function)
+        chosen = _function_name(tracing.choice.function)
         if imgui.begin_combo("##functions", tr("functions: {name}", name=chosen)):
             for option in options:
-                if imgui.selectable(_function_name(option), option == tracing.function)[0]:
+                is_chosen = option == tracing.choice.function
+                if imgui.selectable(_function_name(option), is_chosen)[0]:
                     tracing.record(option)
             imgui.end_combo()
         imgui.set_item_tooltip(
@@ -185,13 +181,13 @@ class TracePanel:
         count = tracing.repeats
         if count > 1:
             _flow(wide)
-            now = count - 1 if tracing.iteration is None else min(tracing.iteration, count - 1)
+            now = count - 1 if tracing.choice.iteration is None else min(tracing.choice.iteration, count - 1)
             imgui.set_next_item_width(wide)
             number = slide_whole(
                 "##step", now + 1, (1, count), lambda n: tr("step {number} of {count}", number=n, count=count)
             )
             if number is not None:
-                tracing.iteration = None if number == count else number - 1
+                tracing.choice.iteration = None if number == count else number - 1
 
     # ── the code ─────────────────────────────────────────────────────────────
 
@@ -199,7 +195,7 @@ class TracePanel:
         style = imgui.get_style()
         below = imgui.get_frame_height_with_spacing() * (2 if _probe_is_broken() else 1)
         with look.font(look.text, theme.SMALL):
-            below += imgui.get_text_line_height_with_spacing() if tracing.probe_message else 0.0
+            below += imgui.get_text_line_height_with_spacing() if tracing.probe.message else 0.0
         size = ImVec2(0, -below)
         view = tracing.view
         if view is None:
@@ -225,9 +221,9 @@ class TracePanel:
         room = 0.62 * imgui.get_window_width()
         imgui.align_text_to_frame_padding()
         imgui.set_next_item_width(imgui.get_font_size() * 13)
-        closed = fitting_path(Path(tracing.file).name, imgui.get_font_size() * 10.5)
-        chosen = choose("##file", closed, view.paths, tracing.file, name=shown)
-        imgui.set_item_tooltip(tracing.file)
+        closed = fitting_path(Path(tracing.caret.file).name, imgui.get_font_size() * 10.5)
+        chosen = choose("##file", closed, view.paths, tracing.caret.file, name=shown)
+        imgui.set_item_tooltip(tracing.caret.file)
         if chosen is not None:
             tracing.open(chosen)
         for call in view.stack():
@@ -238,18 +234,18 @@ class TracePanel:
                 imgui.text_disabled("…")
                 break
             if button(label, tr("line {line} of {file}", line=call.line, file=shown(call.path)), small=True):
-                tracing.file, tracing.line, tracing.scrolls = call.path, call.line, True
+                tracing.caret.file, tracing.caret.line, tracing.caret.is_asked = call.path, call.line, True
 
     def _rows(self, tracing: Tracing, view: TraceView, look: Theme) -> None:
-        rows = view.rows(tracing.file)
+        rows = view.rows(tracing.caret.file)
         line = imgui.get_text_line_height() + 2 * look.scale
         letter = imgui.calc_text_size("0").x
         wide = imgui.get_content_region_avail().x
         grid = _Grid(imgui.get_cursor_screen_pos(), letter, line, wide, self.code * wide)
         self._splitter(grid, len(rows), look)
-        if tracing.scrolls and tracing.line:
-            tracing.scrolls = False
-            imgui.set_scroll_y(max((tracing.line - 1) * line - imgui.get_window_height() / 3, 0.0))
+        if tracing.caret.is_asked and tracing.caret.line:
+            tracing.caret.is_asked = False
+            imgui.set_scroll_y(max((tracing.caret.line - 1) * line - imgui.get_window_height() / 3, 0.0))
         first = max(int(imgui.get_scroll_y() / line) - 1, 0)
         last = first + int(imgui.get_window_height() / line) + 3
         colours = _colours_of(tuple(row.code for row in rows))
@@ -278,7 +274,7 @@ class TracePanel:
     ) -> None:
         draw, top = imgui.get_window_draw_list(), grid.corner.y + (row.number - 1) * grid.line
         left, edge = grid.corner.x, grid.corner.x + grid.code
-        if row.number == tracing.line:
+        if row.number == tracing.caret.line:
             far = ImVec2(grid.corner.x + grid.wide, top + grid.line)
             draw.add_rect_filled(ImVec2(left, top), far, theme.packed(theme.palette.field))
         number = f"{row.number:>{_GUTTER - 1}}"
@@ -305,7 +301,7 @@ class TracePanel:
         imgui.set_cursor_screen_pos(ImVec2(grid.corner.x, top))
         code = row.code.expandtabs(4)
         if imgui.invisible_button("##code", ImVec2(max(edge - grid.corner.x - 5, 1.0), grid.line)):
-            tracing.line = row.number
+            tracing.caret.line = row.number
         if len(code) * grid.letter > edge - start:
             imgui.set_item_tooltip(code.strip())
         mouse = imgui.get_io().mouse_pos
@@ -315,7 +311,7 @@ class TracePanel:
             if imgui.is_mouse_double_clicked(0):
                 self._select(tracing, row, code, *word_at(code, int((mouse.x - start) / grid.letter)))
             elif imgui.is_mouse_clicked(0):
-                tracing.line, self.selects, self.selection = row.number, (row.number, column), None
+                tracing.caret.line, self.selects, self.selection = row.number, (row.number, column), None
         if self.selects is not None and self.selects[0] == row.number and imgui.is_mouse_down(0):
             if abs(column - self.selects[1]) > 0 and not imgui.is_mouse_double_clicked(0):
                 self._select(tracing, row, code, *sorted((self.selects[1], column)))
@@ -330,7 +326,7 @@ class TracePanel:
         self.selection = row.number, first, last
         text = code[first:last].strip()
         if text:
-            tracing.line, tracing.expression = row.number, text
+            tracing.caret.line, tracing.probe.expression = row.number, text
 
     # ── values ───────────────────────────────────────────────────────────────
 
@@ -429,7 +425,8 @@ class TracePanel:
 
     def _probe(self, tracing: Tracing, look: Theme) -> None:
         """Draw the field of an expression, and what shows it."""
-        where = tr("behind line {line}", line=tracing.line) if tracing.line else tr("behind a line")
+        line = tracing.caret.line
+        where = tr("behind line {line}", line=line) if line else tr("behind a line")
         shows = isinstance(tracing.session.view.map, ProbeMap)
         back, show = tr("Back to the picture"), tr("Show as a map")
         find = tr("First texel where it is true")
@@ -443,12 +440,13 @@ class TracePanel:
         imgui.set_next_item_width(-wide)
         with look.font(look.code):
             hint = tr("an expression: select it in a line, or type it")
-            _, tracing.expression = imgui.input_text_with_hint("##probe", hint, tracing.expression)
+            probe = tracing.probe
+            _, probe.expression = imgui.input_text_with_hint("##probe", hint, probe.expression)
         imgui.same_line()
         imgui.text_disabled(where)
         if not _probe_is_broken():
             imgui.same_line()
-        can = bool(tracing.line and tracing.expression.strip())
+        can = bool(tracing.caret.line and tracing.probe.expression.strip())
         if shows:
             if button(back, tr("The sketch's own view again")):
                 tracing.session.show(None)
@@ -457,9 +455,9 @@ class TracePanel:
         imgui.same_line()
         if button(find, tr("The first texel, from the south-west, where it is not 0"), enabled=can):
             tracing.show_probe(find=True)
-        if tracing.probe_message:
+        if tracing.probe.message:
             with look.font(look.text, theme.SMALL):
-                text = tracing.probe_message
+                text = tracing.probe.message
                 room = imgui.get_content_region_avail().x
                 imgui.text_colored(theme.colour(theme.palette.warm), fitting(text.replace("\n", "  "), room))
                 imgui.set_item_tooltip(text)
@@ -530,8 +528,8 @@ def title_of(tracing: Tracing) -> str:
 def state_of(tracing: Tracing) -> tuple[str, theme.Rgb]:
     """Return what is traced or why it is not, and the colour to write it in."""
     view = tracing.view
-    if tracing.compiling:
-        return tr("compiling {name} …", name=tracing.compiling), theme.palette.warm
+    if tracing.compiler.compiles:
+        return tr("compiling {name} …", name=tracing.compiler.compiles), theme.palette.warm
     if tracing.message:
         return tracing.message, theme.palette.warm
     if view is None:
@@ -557,7 +555,7 @@ def state_of(tracing: Tracing) -> tuple[str, theme.Rgb]:
         parts.append(tr("its result differs from the texel's: the driver rounds a recorded sum otherwise"))
     if tracing.other() is None:
         missing = {Beside.KEPT: tr("nothing is kept yet"), Beside.SAVE: tr("nothing was saved since")}
-        parts += [missing[tracing.beside]] if tracing.beside in missing else []
+        parts += [missing[tracing.compared.beside]] if tracing.compared.beside in missing else []
     else:
         parts.append(tr("both run alike") if view.difference is None else f"≠ {other_name(tracing)}")
     return "   ".join(parts), theme.palette.dim
@@ -566,7 +564,7 @@ def state_of(tracing: Tracing) -> tuple[str, theme.Rgb]:
 def other_name(tracing: Tracing) -> str:
     """Return what is beside a trace: its texel, where it is another, or the save before."""
     other = tracing.other()
-    if other is None or tracing.beside is Beside.SAVE:
+    if other is None or tracing.compared.beside is Beside.SAVE:
         return tr("before the last save")
     return tr("{spot}, kept", spot=Spot(other.step, (other.texel[0], other.texel[1])))
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -66,53 +66,111 @@ class Spot:
 
 
 @dataclass
+class Choice:
+    """What is chosen to be traced, of one sketch."""
+
+    sketch: Path | None = None
+    pin: tuple[float, float] | None = None  # a place in fractions of the picture; None: the mouse
+    spot: Spot | None = None  # a texel that was chosen by number
+    pass_name: str = ""  # that is traced; "": what the picture shows
+    function: str | None = None  # None: the pass's own; "all", or a name
+    iteration: int | None = None  # of a repeated pass, from 0; None: the last
+    plain: set[str] = field(default_factory=set)  # passes that are traced in their plain form
+
+
+@dataclass
+class Caret:
+    """The line that is looked at."""
+
+    file: str = ""
+    line: int = 0  # from 1; 0: none
+    is_asked: bool = False  # it is to be shown
+
+
+@dataclass
+class Compared:
+    """What a trace is compared with."""
+
+    beside: Beside = Beside.NOTHING
+    kept: Trace | None = None
+    before: Trace | None = None  # the last save
+
+
+@dataclass
+class ProbeField:
+    """An expression that is shown in every texel."""
+
+    expression: str = ""
+    message: str = ""  # what the map shows, or why there is none
+    coming: ProbeMap | None = None  # shown once the sandbox has compiled it
+    find: ProbeMap | None = None  # whose first texel is looked for in the next picture
+
+
+@dataclass
+class Compiler:
+    """What compiles traced texts, and what it has answered."""
+
+    sandbox: TraceSandbox | None = None
+    compiles: str = ""  # what of, now
+    tried: object = None  # the program
+    ready: set[object] = field(default_factory=set)  # programs that it has compiled
+    refused: dict[object, str] = field(default_factory=dict)  # programs that it could not run
+
+
+@dataclass
+class Seek:
+    """What the next trace is to show."""
+
+    not_finite: bool = False  # its first event that is not finite
+    run: int = 0  # this run, from 1, of the caret's line
+
+
+@dataclass
+class Under:
+    """What is under the mouse or the pin."""
+
+    inspector: Inspector
+    pixel: Pixel | None = None
+    spots: tuple[Spot, ...] = ()  # what the picture shows first
+    of: object = None  # pixel and picture that they are of
+
+
+@dataclass
+class Last:
+    """The last trace."""
+
+    count: int = 0  # made so far
+    of: object = None  # what was chosen
+    free_at: float = 0.0  # when the next one may be made
+
+
+@dataclass
 class Tracing:
     """The traces of one session."""
 
     session: Session
-    sandbox: TraceSandbox | None = None
+    sandbox: InitVar[TraceSandbox | None] = None
     now: Callable[[], float] = time.perf_counter
     on: bool = False
-    pin: tuple[float, float] | None = None  # a place in fractions of the picture; None: the mouse
-    pass_name: str = ""  # that is traced; "": what the picture shows
-    function: str | None = None  # None: the pass's own; "all", or a name
-    iteration: int | None = None  # of a repeated pass, from 0; None: the last
-    beside: Beside = Beside.NOTHING
-    kept: Trace | None = None
     view: TraceView | None = None
-    spots: tuple[Spot, ...] = ()  # under the mouse or the pin, what the picture shows first
     message: str = ""  # why there is no trace of what is chosen
-    compiling: str = ""  # what the sandbox compiles
     selection: Selection = field(default_factory=Selection)
-    file: str = ""  # that is shown
-    line: int = 0  # the caret's, from 1; 0: none
-    scrolls: bool = False  # the caret's line is to be scrolled to
-    expression: str = ""  # of the probe
-    probe_message: str = ""
-    plain: set[str] = field(default_factory=set)  # passes that are traced in their plain form
-    traces: int = 0  # made so far
-    inspector: Inspector = field(init=False)
-    _sketch: Path | None = None  # that is traced
-    _fixed: Spot | None = None  # a texel that was chosen by number
-    _seek: bool = False  # the next trace is to show its first event that is not finite
-    _seek_run: int = 0  # the next trace is to show this run, from 1, of the caret's line
-    _before: Trace | None = None  # before the last save
-    _pixel: Pixel | None = None
-    _spots_of: object = None
-    _traced: object = None  # what the view is of
-    _ready: set[object] = field(default_factory=set)  # programs that a sandbox has compiled, or need none
-    _refused: dict[object, str] = field(default_factory=dict)  # programs that the sandbox could not run
-    _tried: object = None  # what the sandbox compiles
-    _coming: ProbeMap | None = None  # shown once the sandbox has compiled it
-    _find: ProbeMap | None = None  # whose first texel is looked for in the next picture
-    _free_at: float = 0.0
+    choice: Choice = field(default_factory=Choice)
+    caret: Caret = field(default_factory=Caret)
+    compared: Compared = field(default_factory=Compared)
+    probe: ProbeField = field(default_factory=ProbeField)
+    seek: Seek = field(default_factory=Seek)
+    last: Last = field(default_factory=Last)
+    compiler: Compiler = field(init=False)
+    under: Under = field(init=False)
 
-    def __post_init__(self) -> None:
-        self.inspector = Inspector(self.session, inner=True)
+    def __post_init__(self, sandbox: TraceSandbox | None) -> None:
+        self.compiler = Compiler(sandbox)
+        self.under = Under(Inspector(self.session, inner=True))
 
     def release(self) -> None:
         """Release what was made in the engine's context."""
-        self.inspector.release()
+        self.under.inspector.release()
 
     # ── choosing ─────────────────────────────────────────────────────────────
 
@@ -120,47 +178,47 @@ class Tracing:
         """Switch tracing on or off; off leaves nothing but the choice."""
         self.on = not self.on
         if not self.on:
-            self.view, self._traced, self._spots_of, self.spots = None, None, None, ()
-            self.message = self.compiling = ""
+            self.view, self.last.of, self.under.of, self.under.spots = None, None, None, ()
+            self.message = self.compiler.compiles = ""
             if isinstance(self.session.view.map, ProbeMap):
                 self.session.show(None)
 
     def point(self, pixel: Pixel) -> None:
         """Trace what is under a pixel of the picture, unless a place is pinned."""
         if not self.is_pinned:
-            self._pixel = pixel
+            self.under.pixel = pixel
 
     def pin_at(self, pixel: Pixel, size: tuple[int, int]) -> None:
         """Pin a pixel of the picture, of a size."""
-        self.pin = (pixel[0] + 0.5) / size[0], (pixel[1] + 0.5) / size[1]
-        self._fixed = None
+        self.choice.pin = (pixel[0] + 0.5) / size[0], (pixel[1] + 0.5) / size[1]
+        self.choice.spot = None
 
     def follow(self) -> None:
         """Follow the mouse again."""
-        self.pin = self._fixed = None
+        self.choice.pin = self.choice.spot = None
 
     def keep(self) -> None:
         """Keep the trace that is shown, to compare others with it."""
         if self.view is not None:
-            self.kept, self.beside = self.view.trace, Beside.KEPT
+            self.compared.kept, self.compared.beside = self.view.trace, Beside.KEPT
             self._show(self.view.trace)
 
     def compare(self, beside: Beside) -> None:
         """Show the values of another trace beside those of this one."""
-        self.beside = beside
+        self.compared.beside = beside
         if self.view is not None:
             self._show(self.view.trace)
 
     def record(self, function: str | None) -> None:
         """Trace other functions: the pass's own, "all", or one."""
-        self.function = function
+        self.choice.function = function
 
     def trace_not_finite(self, first: NotFinite) -> None:
         """Trace a texel that is not finite, and go to where its run first is not."""
         plan = self.session.plan
         path = _public_path(plan, first.path) if plan is not None else first.path
-        self.on, self._seek = True, True
-        self.pin, self.pass_name, self._fixed = None, path, Spot(path, first.texel)
+        self.on, self.seek.not_finite = True, True
+        self.choice.pin, self.choice.pass_name, self.choice.spot = None, path, Spot(path, first.texel)
 
     def go_to_not_finite(self) -> None:
         """Show the first event that is not finite."""
@@ -168,7 +226,7 @@ class Tracing:
         if event is not None:
             self.go_to(event)
         elif self.on:
-            others = tr("; record all functions") if self.function != "all" else ""
+            others = tr("; record all functions") if self.choice.function != "all" else ""
             self.message = tr("no recorded value is NaN or infinite") + others
 
     def go_to_difference(self) -> None:
@@ -178,76 +236,76 @@ class Tracing:
             if here is not None:
                 self.go_to(here)
             elif there is not None:
-                self.file, self.line, self.scrolls = there.path, there.line, True
+                self.caret.file, self.caret.line, self.caret.is_asked = there.path, there.line, True
 
     def go_to(self, event: Event) -> None:
         """Show an event's line, in its call and its iterations."""
         if self.view is not None:
             self.view.go_to(event)
-            self.file, self.line, self.scrolls = event.path, event.line, True
+            self.caret.file, self.caret.line, self.caret.is_asked = event.path, event.line, True
 
     def mark(self, size: tuple[float, float]) -> tuple[float, float] | None:
         """Return where in a picture of a size the pinned texel is, in fractions; None where it is not."""
-        if self.pin is not None or self._fixed is None:
-            return self.pin
+        if self.choice.pin is not None or self.choice.spot is None:
+            return self.choice.pin
         shown = self.session.view.map
         if shown is None:
             return None
         path = shown.probe.path if isinstance(shown, ProbeMap) else shown.ref.partition(":")[0]
         result = self.session.result_of(shown.ref)
-        if result is None or canonical_path(path) != self._fixed.path:
+        if result is None or canonical_path(path) != self.choice.spot.path:
             return None
         texels, worst = result[0].size, max(n / side for n, side in zip(result[0].size, size, strict=True))
-        x, y = ((t + 0.5 - n / 2) / worst for t, n in zip(self._fixed.texel, texels, strict=True))
+        x, y = ((t + 0.5 - n / 2) / worst for t, n in zip(self.choice.spot.texel, texels, strict=True))
         return 0.5 + x / size[0], 0.5 + y / size[1]
 
     def other(self) -> Trace | None:
         """Return the trace that the one shown is compared with."""
-        return {Beside.KEPT: self.kept, Beside.SAVE: self._before}.get(self.beside)
+        return {Beside.KEPT: self.compared.kept, Beside.SAVE: self.compared.before}.get(self.compared.beside)
 
     @property
     def spot(self) -> Spot | None:
         """The texel that is traced, or is to be."""
-        if self._fixed is not None:
-            return self._fixed
-        named = [spot for spot in self.spots if spot.path == self.pass_name]
-        return next(iter(named or self.spots), None)
+        if self.choice.spot is not None:
+            return self.choice.spot
+        named = [spot for spot in self.under.spots if spot.path == self.choice.pass_name]
+        return next(iter(named or self.under.spots), None)
 
     def choose_pass(self, name: str) -> None:
         """Trace another pass, at its texel of the same place."""
-        self.pass_name, self._fixed, self.iteration = name, None, None
-        self.view, self.file, self.line = None, "", 0
+        self.choice.pass_name, self.choice.spot, self.choice.iteration = name, None, None
+        self.view, self.caret.file, self.caret.line = None, "", 0
 
     def open(self, file: str) -> None:
         """Show a file, at the first call in it."""
         lines = [call.line for call in self.view.trace.calls if call.path == file] if self.view else []
-        self.file, self.line, self.scrolls = file, min(lines, default=1), True
+        self.caret.file, self.caret.line, self.caret.is_asked = file, min(lines, default=1), True
 
     @property
     def can_be_plain(self) -> bool:
         """Whether the chosen pass runs as a compute shader, and has a plain form that can be traced."""
         step = self._step(self.spot) if self.spot is not None else None
-        chosen = self.spot is not None and self.spot.path not in self.plain
+        chosen = self.spot is not None and self.spot.path not in self.choice.plain
         return chosen and step is not None and isinstance(step.kernel, ComputeVariant)
 
     def trace_plain(self) -> None:
         """Trace the plain form of the chosen pass, which runs for it first."""
         if self.spot is not None:
-            self.plain.add(self.spot.path)
+            self.choice.plain.add(self.spot.path)
 
     def pin_here(self) -> None:
         """Pin the texel that is traced."""
-        self._fixed = self.spot
+        self.choice.spot = self.spot
 
     @property
     def is_pinned(self) -> bool:
         """Whether the mouse changes nothing."""
-        return self.pin is not None or self._fixed is not None
+        return self.choice.pin is not None or self.choice.spot is not None
 
     @property
     def is_stale(self) -> bool:
         """Whether the values that are shown are not those of what is chosen."""
-        return bool(self.compiling or self.message)
+        return bool(self.compiler.compiles or self.message)
 
     @property
     def repeats(self) -> int:
@@ -268,11 +326,11 @@ class Tracing:
             "texel": list(trace.texel) if trace is not None else [],
             "events": len(trace.events) if trace is not None else 0,
             "exact": trace is not None and trace.is_exact,
-            "traces": self.traces,
-            "line": self.line,
-            "compiling": self.compiling,
+            "traces": self.last.count,
+            "line": self.caret.line,
+            "compiling": self.compiler.compiles,
             "message": self.message,
-            "probe": self.probe_message,
+            "probe": self.probe.message,
             "parts": [None if event is None else event.line for event in parts or ()],
         }
 
@@ -281,43 +339,43 @@ class Tracing:
         """How long nothing needs to be done [s]."""
         if not self.on:
             return math.inf
-        if self.compiling:
+        if self.compiler.compiles:
             return _PATIENCE
-        if self._traced != self._wanted() and self._can_trace:
-            return max(self._free_at - self.now(), 0.0)
+        if self.last.of != self._wanted() and self._can_trace:
+            return max(self.last.free_at - self.now(), 0.0)
         return math.inf
 
     def update(self, picture: moderngl.Texture | None) -> None:
         """Trace, if anything has changed and it is time to; ``picture`` is what the session returned last."""
         if not self.on or picture is None:
             return
-        if self._sketch != self.session.path:
+        if self.choice.sketch != self.session.path:
             self._begin(self.session.path)
         self._take_report()
         if not self._can_trace:
             return
         self._find_spots(picture)
-        if self._find is not None and self._find == self.session.view.map:
+        if self.probe.find is not None and self.probe.find == self.session.view.map:
             self._find_first()
         wanted, spot = self._wanted(), self.spot
-        if wanted == self._traced or self.now() < self._free_at or spot is None:
+        if wanted == self.last.of or self.now() < self.last.free_at or spot is None:
             return
         start = self.now()
         try:
             self._trace(spot, wanted)
         except PlaygroundError as error:
             self._fail(str(error), wanted)
-        self._free_at = self.now() + _REST * (self.now() - start)
+        self.last.free_at = self.now() + _REST * (self.now() - start)
 
     def _begin(self, sketch: Path) -> None:
         """Begin with another sketch, of which nothing is chosen yet."""
-        if self._sketch is not None:
-            self.pin = self._fixed = self.iteration = self.kept = self._before = self.view = None
-            self.pass_name = self.file = self.probe_message = ""
-            self.plain.clear()
-            self._ready.clear()
-            self._refused.clear()
-        self._sketch = sketch
+        if self.choice.sketch is not None:
+            self.choice = Choice(function=self.choice.function)
+            self.compared = Compared(self.compared.beside)
+            self.view, self.caret.file, self.probe.message = None, "", ""
+            self.compiler.ready.clear()
+            self.compiler.refused.clear()
+        self.choice.sketch = sketch
 
     def _trace(self, spot: Spot, wanted: object) -> None:
         """Trace a texel, or have the sandbox compile the text first; raise what is wrong with either."""
@@ -328,11 +386,11 @@ class Tracing:
         elif not is_traceable(step):
             self._fail(f"'{spot.path}' {why_not(step)}", wanted)
         else:
-            program = step.kernel.source.canonical, self.function
-            if self.sandbox is None or program in self._ready:
+            program = step.kernel.source.canonical, self.choice.function
+            if self.compiler.sandbox is None or program in self.compiler.ready:
                 self._run(plan, spot, wanted)
-            elif program in self._refused:
-                self._fail(self._refused[program], wanted)
+            elif program in self.compiler.refused:
+                self._fail(self.compiler.refused[program], wanted)
             else:
                 self._compile(plan, spot, program)
 
@@ -343,7 +401,7 @@ class Tracing:
         assert last is not None and session.sketch is not None
         # A probe's map has other outputs; what it is of runs as in the sketch's own view.
         sketch = session.sketch if isinstance(session.view.map, ProbeMap) else last.sketch
-        if spot.path in self.plain:
+        if spot.path in self.choice.plain:
             return engine.tracer.plan(sketch, spot.path, last.frame_size, last.time, last.steps)
         return last if sketch is last.sketch else engine.plan(sketch, last.frame_size, last.time, last.steps)
 
@@ -357,7 +415,7 @@ class Tracing:
 
     def _wanted(self) -> object:
         session = self.session
-        choice = self.spot, self.function, self.iteration, frozenset(self.plain)
+        choice = self.spot, self.choice.function, self.choice.iteration, frozenset(self.choice.plain)
         return *choice, session.draws, id(session.engine)
 
     def _step(self, spot: Spot) -> Step | None:
@@ -367,16 +425,16 @@ class Tracing:
     def _find_spots(self, picture: moderngl.Texture) -> None:
         """Find the texel of each pass that is under the mouse, or under the pin."""
         session, plan = self.session, self.session.plan
-        pixel = self._pixel
-        if self.pin is not None:
-            pixel = int(self.pin[0] * picture.size[0]), int(self.pin[1] * picture.size[1])
+        pixel = self.under.pixel
+        if self.choice.pin is not None:
+            pixel = int(self.choice.pin[0] * picture.size[0]), int(self.choice.pin[1] * picture.size[1])
         key = pixel, session.draws, id(session.engine)
-        if pixel is None or plan is None or key == self._spots_of:
+        if pixel is None or plan is None or key == self.under.of:
             return
-        self._spots_of = key
+        self.under.of = key
         wide, high = plan.frame_size  # fewer pixels than the picture has, in a preview
         drawn = pixel[0] * wide // picture.size[0], pixel[1] * high // picture.size[1]
-        report = self.inspector.at(pixel, picture)
+        report = self.under.inspector.at(pixel, picture)
         spots: dict[str, Spot] = {}
         if session.view.map is None:
             spots["view"] = Spot("view", drawn)
@@ -389,57 +447,59 @@ class Tracing:
             if session.view.map is None and step is not None and step.size == (wide, high):
                 spots.setdefault(path, Spot(path, drawn))
         able = [spot for spot in spots.values() if is_traceable(_step_of(plan, spot.path))]
-        self.spots = (*able, *(spot for spot in spots.values() if spot not in able))
+        self.under.spots = (*able, *(spot for spot in spots.values() if spot not in able))
 
     def _compile(self, plan: Plan, spot: Spot, program: object) -> None:
         """Have the sandbox compile the text of a spot's pass, unless it does already."""
-        assert self.sandbox is not None
-        if program != self._tried and self._coming is None:
-            self._tried, self.compiling, self.message = program, spot.path, ""
-            self.sandbox.submit(TryTrace(plan.sketch, spot.path, self.function, time=plan.time))
+        assert self.compiler.sandbox is not None
+        if program != self.compiler.tried and self.probe.coming is None:
+            self.compiler.tried, self.compiler.compiles, self.message = program, spot.path, ""
+            function = self.choice.function
+            self.compiler.sandbox.submit(TryTrace(plan.sketch, spot.path, function, time=plan.time))
 
     def _take_report(self) -> None:
-        report = self.sandbox.poll() if self.sandbox is not None and self.compiling else None
+        compiler = self.compiler
+        report = compiler.sandbox.poll() if compiler.sandbox is not None and compiler.compiles else None
         if report is None:
             return
-        coming, self._coming = self._coming, None
-        tried, self._tried, self.compiling = self._tried, None, ""
+        coming, self.probe.coming = self.probe.coming, None
+        tried, self.compiler.tried, self.compiler.compiles = self.compiler.tried, None, ""
         if coming is not None:
             self._take_probe(coming, report)
         elif tried is not None:
             refused = refusal(report)
             if refused is None:
-                self._ready.add(tried)
+                self.compiler.ready.add(tried)
             else:
-                self._refused[tried] = str(refused)
+                self.compiler.refused[tried] = str(refused)
 
     def _fail(self, message: str, wanted: object) -> None:
-        self.message, self._traced, self._seek = message, wanted, False
+        self.message, self.last.of, self.seek.not_finite = message, wanted, False
 
     def _run(self, plan: Plan, spot: Spot, wanted: object) -> None:
         tracer = self.session.engine.tracer
-        trace = tracer.trace(plan, spot.path, spot.texel, self.iteration, self.function)
-        self.traces += 1
-        self.message, self._traced = "", wanted
+        trace = tracer.trace(plan, spot.path, spot.texel, self.choice.iteration, self.choice.function)
+        self.last.count += 1
+        self.message, self.last.of = "", wanted
         before = self.view.trace if self.view is not None else None
         if before is not None and before.step == trace.step and before.files != trace.files:
-            self._before = before
+            self.compared.before = before
         self._show(trace)
-        if self._seek:
-            self._seek = False
+        if self.seek.not_finite:
+            self.seek.not_finite = False
             self.go_to_not_finite()
-        elif self._seek_run:
-            runs = run_events(trace, self.file, self.line)
-            run, self._seek_run = self._seek_run, 0
+        elif self.seek.run:
+            runs = run_events(trace, self.caret.file, self.caret.line)
+            run, self.seek.run = self.seek.run, 0
             if run <= len(runs):
                 self.go_to(runs[run - 1])
 
     def _show(self, trace: Trace) -> None:
         self.view = TraceView(trace, self.selection, self.other())
-        if self.file not in trace.files:
-            self.file = next(iter(self.view.paths), "")
-            head = next((call.line for call in trace.calls if call.path == self.file), 0)
-            self.line, self.scrolls = head, bool(head)
+        if self.caret.file not in trace.files:
+            self.caret.file = next(iter(self.view.paths), "")
+            head = next((call.line for call in trace.calls if call.path == self.caret.file), 0)
+            self.caret.line, self.caret.is_asked = head, bool(head)
 
     # ── probes ───────────────────────────────────────────────────────────────
 
@@ -449,21 +509,22 @@ class Tracing:
         if sketch is None or spot is None:
             return
         step = self._step(spot)  # of a fast variant the pass that runs
-        path = self._own_path(spot.path if step is None or spot.path in self.plain else step.path)
-        probe = Probe(path, self.file, self.line, self.expression.strip())
+        path = self._own_path(spot.path if step is None or spot.path in self.choice.plain else step.path)
+        probe = Probe(path, self.caret.file, self.caret.line, self.probe.expression.strip())
         try:
             probe_map = map_of(sketch, probe)
         except PlaygroundError as error:
-            self.probe_message = complaint(error, probe)
+            self.probe.message = complaint(error, probe)
             return
-        self.probe_message = ""
-        self.pin, self._fixed = None, spot  # a map has another texel in that place
-        self._find = probe_map if find else None
-        if self.sandbox is None:
+        self.probe.message = ""
+        self.choice.pin, self.choice.spot = None, spot  # a map has another texel in that place
+        self.probe.find = probe_map if find else None
+        if self.compiler.sandbox is None:
             self._take_probe(probe_map, SandboxReport(True))
             return
-        self._coming, self._tried, self.compiling = probe_map, None, f"'{self.expression.strip()}'"
-        self.sandbox.submit(TrySketch(probe_map.of(sketch), time=self.session.clock.time))
+        self.probe.coming, self.compiler.tried = probe_map, None
+        self.compiler.compiles = f"'{probe.expression}'"
+        self.compiler.sandbox.submit(TrySketch(probe_map.of(sketch), time=self.session.clock.time))
 
     def _own_path(self, path: str) -> str:
         shown_map = self.session.view.map
@@ -472,28 +533,28 @@ class Tracing:
     def _take_probe(self, probe_map: ProbeMap, report: SandboxReport) -> None:
         refused = refusal(report)
         if refused is not None:
-            self.probe_message, self._find = complaint(refused, probe_map.probe), None
+            self.probe.message, self.probe.find = complaint(refused, probe_map.probe), None
             return
         self.session.view.show(probe_map)
         self.session.fit_map()
-        self.probe_message = tr("the map shows {probe}", probe=_name_of(probe_map.probe))
-        if self._find is not None:
-            self._find = self.session.view.map if isinstance(self.session.view.map, ProbeMap) else None
+        self.probe.message = tr("the map shows {probe}", probe=_name_of(probe_map.probe))
+        if self.probe.find is not None:
+            self.probe.find = self.session.view.map if isinstance(self.session.view.map, ProbeMap) else None
 
     def _find_first(self) -> None:
         """Pin the first texel, row by row from the south, at which the probe is not 0."""
-        probe_map, self._find = self._find, None
+        probe_map, self.probe.find = self.probe.find, None
         assert probe_map is not None
         found = first_hit(self.session, probe_map)
         if found is None:
-            self.probe_message = tr("{probe} is 0 or false in every texel", probe=_name_of(probe_map.probe))
+            self.probe.message = tr("{probe} is 0 or false in every texel", probe=_name_of(probe_map.probe))
             return
         texel, count, runs = found
-        self.pin, self._fixed = None, Spot(canonical_path(probe_map.probe.path), texel)
-        self._seek_run = runs
+        self.choice.pin, self.choice.spot = None, Spot(canonical_path(probe_map.probe.path), texel)
+        self.seek.run = runs
         more = tr("; {count} texels in all", count=f"{count:,}") if count > 1 else tr("; in no other")
         first = tr("first at texel {column}, {row}, in run {runs}", column=texel[0], row=texel[1], runs=runs)
-        self.probe_message = first + more
+        self.probe.message = first + more
 
 
 def complaint(error: PlaygroundError, probe: Probe) -> str:
