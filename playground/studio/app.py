@@ -74,7 +74,7 @@ from playground.studio.settings_panel import draw_hints
 from playground.studio.start.panel import StartPanel
 from playground.studio.status import Status
 from playground.studio.trace.live import LiveTexelFile
-from playground.studio.trace.panel import TracePanel, act_on_picture, draw_mark
+from playground.studio.trace.panel import act_on_picture, draw_mark, trace_tab
 from playground.studio.versions.panel import VersionsPanel
 from playground.studio.window import Window, WindowPlacement, wake
 
@@ -226,7 +226,7 @@ class Live:
         self.autosave = autosave
         self.caching = caching
         self.session = session
-        self.panel, self.trace_panel = Panel(), TracePanel()
+        self.panel = Panel()
         self.place = WindowPlacement(lambda: window.handle)
         controls = WindowControls(
             quit=window.ask_to_close,
@@ -256,6 +256,7 @@ class Live:
         self.start_panel = StartPanel(window.ctx)
         self.versions_panel = VersionsPanel(window.ctx, self.bench.versions)
         self.bench.tabs.append(self.versions_panel.tab)
+        self.bench.tabs.append(trace_tab(self.bench.tracing))
         self.status = Status()
         autosave.compare = self.bench.inspection.compare
         self.bench.actions.opens = self._open
@@ -558,7 +559,6 @@ class Live:
         if picture is not None and not bench.problems.open:
             draw("the hints", lambda: draw_hints(bench.interface.preferences, look, above), None)
         draw("the pinned texel", lambda: draw_mark(tracing, look, area), None)
-        draw("the trace", lambda: self.trace_panel.draw(tracing, look, above), None)
         draw("the notices", lambda: draw_notices(bench.notices, look, area), None)
         draw("what was dropped", lambda: draw_drops(self.drops, look), None)
         draw("the key map", lambda: draw_keymap(bench.interface, look), None)

@@ -76,6 +76,7 @@ class Workbench:
             copy_in=self._copy_in,
         )
         self.tabs: list[Tab] = []  # of the strip below the picture
+        self._before_trace: tuple[bool, bool] | None = None  # code and strip were open; None: no trace
         self.additions: list[Addition] = []  # of the rooms that can be removed
         self.versions = Versions(self.actions, self.inspection.compare, is_left_out=self._shows_rooms_own)
         self.controllers = Controllers(session, self.notices)
@@ -106,8 +107,30 @@ class Workbench:
         drafts = self.session.drafts
         if not drafts.opening and (drafts.shown is not None or drafts.error is not None):
             self.files.follow(drafts.path, drafts.shown.file if drafts.shown is not None else None)
+        self._follow_trace()
         self.panes.has_code = bool(self.files.editing)
         self.problems.is_quiet = self.files.pane.has_keys
+
+    def _follow_trace(self) -> None:
+        """Open the code and the strip's tab while a texel is traced, and show the line that is asked for.
+
+        In a narrow window the code would take the picture's place, and the mouse has to point there.
+        """
+        panes, caret = self.panes, self.tracing.caret
+        if self.tracing.on != (self._before_trace is not None):
+            if self._before_trace is None:
+                strip = panes.is_open("strip", narrow=panes.is_narrow)
+                self._before_trace = panes.code_is_open, strip
+                panes.show_code(panes.code_is_open or not panes.is_narrow)
+                panes.show_strip("trace")
+            else:
+                code, strip = self._before_trace
+                self._before_trace = None
+                panes.show_code(panes.code_is_open and code)
+                panes.show_strip(shown=strip)
+        if self.tracing.on and caret.is_asked:
+            caret.is_asked = False
+            self.files.reveal(Path(caret.file), caret.line)
 
     def _save_typed_sketch(self) -> None:
         """Save what is typed in the sketch's own file: values, keyframes and passes are written into that."""

@@ -72,9 +72,9 @@ class Recorder:
         )  # fmt: skip
 
 
-def march_trace(factor: float = 2.0, text: list[str] = TEXT, shift: int = 0) -> Trace:
+def march_trace(factor: float = 2.0, text: list[str] = TEXT, shift: int = 0, file: str = FILE) -> Trace:
     """Return the run of ``TEXT``; ``shift``: lines that were inserted before it."""
-    run = Recorder(text=text, shift=shift)
+    run = Recorder(file, text, shift)
     run.enter("kernel", HEAD_OF_KERNEL, 16)
     run.put("argument", "texel", HEAD_OF_KERNEL, (3, 5))
     total = 0.0

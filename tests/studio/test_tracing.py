@@ -7,21 +7,24 @@ from pathlib import Path
 
 import pytest
 from imgui_bundle import imgui
+from imgui_bundle.imgui_color_text_edit import TextEditor
 
 from playground.engine.engine import Engine
 from playground.engine.non_finite import NotFinite
 from playground.engine.sandbox import SandboxReport, TrySketch, TryTrace
 from playground.engine.trace.probe import Probe, ProbeMap, map_of
 from playground.errors import SandboxTimeout, ShaderError
+from playground.studio.code.panel import typing
 from playground.studio.inspect.inspector import texel_of_map
 from playground.studio.keys import close_one, open_layers
-from playground.studio.trace.panel import TracePanel, spark_points, state_of, title_of, word_at
+from playground.studio.trace.panel import state_of, trace_tab
 from playground.studio.trace.rows import Row, TraceView
-from playground.studio.trace.tracing import Beside, Spot, Tracing, complaint
+from playground.studio.trace.tracing import Beside, Compared, Spot, Tracing, complaint
+from playground.studio.trace.values_panel import spark_points, word_at
 
 from ..sketch_texts import map_of_height
-from .hand_traces import FILE, march_trace
-from .panel_desk import Bare
+from .hand_traces import march_trace
+from .panel_desk import Bare, OpenBare
 from .session_desk import OpenSession
 
 TERRAIN = """// terrain.glsl -- steps, and a hole
@@ -43,6 +46,8 @@ ADD, ROOT, RETURN = 7, 12, 13
 FILES = {"terrain.glsl": TERRAIN, "sketch.toml": "format = 1\nsize = [9, 6]\n" + map_of_height()}
 SIZE = 90, 60
 HARMONIC = 1 + 1 / 2 + 1 / 3 + 1 / 4
+
+DocPos = TextEditor.DocPos
 
 Begin = Callable[..., Tracing]
 
@@ -330,31 +335,55 @@ def test_a_probe_that_does_not_compile_leaves_the_picture(begin: Begin) -> None:
     assert "summ" in tracing.probe.message and not isinstance(tracing.session.view.map, ProbeMap)
 
 
-@pytest.mark.parametrize("wide", [950.0, 420.0])
-def test_the_window_draws_all_that_a_trace_may_have(bare: Bare, wide: float) -> None:
-    tracing, panel, draw = bare.bench.tracing, TracePanel(), bare.draw
-    tracing.on, tracing.caret.file, tracing.caret.line = True, FILE, 4
-    tracing.compared.kept, tracing.compared.beside = march_trace(factor=3.0), Beside.KEPT
-    tracing.view = TraceView(march_trace(), other=tracing.compared.kept)
-    tracing.probe.message, tracing.probe.expression = "the map shows far behind line 4", "far"
+# ── the pane and the strip ────────────────────────────────────────────────────
+
+
+def draw_too(bare: Bare, trace: Callable[[], object] = lambda: None) -> None:
+    """Draw the strip with the trace's tab, and the code pane beside the picture."""
+    bench, draw = bare.bench, bare.draw
+    bench.tabs.append(trace_tab(bench.tracing))
 
     def with_trace() -> None:
+        bench.follow_files()
         draw()
-        panel.draw(tracing, bare.theme, (1280.0 - wide, 0.0, wide, 900.0))
+        trace()
+        bare.draw_pane((700.0, 0.0, 580.0, 470.0))
 
-    bare.draw = with_trace
-    event = tracing.view.trace.first_not_finite()
+    bare.draw = with_trace  # type: ignore[method-assign]
+
+
+@pytest.mark.parametrize("wide", [1280, 900])
+def test_the_pane_draws_all_that_a_trace_may_have(open_bare: OpenBare, folder: Path, wide: int) -> None:
+    """Calls, loops, a comparison, what is not finite; the cursor's line is the trace's, and back."""
+    file = folder / "march.glsl"
+    one, other = march_trace(file=str(file)), march_trace(3.0, file=str(file))
+    file.write_text("\n".join(one.files[str(file)]), encoding="utf-8")
+    bare = open_bare(folder, size=(wide, 720))
+    tracing = bare.bench.tracing
+    tracing.on, tracing.compared = True, Compared(Beside.KEPT, other)
+    tracing.view = TraceView(one, other=other)
+    tracing.probe.message = "the map shows far behind line 4"
+    draw_too(bare)
+    event = one.first_not_finite()
     assert event is not None
     tracing.go_to(event)
-    bare.run_frames(3)
+    bare.run_frames(6)
+    current = bare.bench.files.current
+    assert current is not None and current.text.path == file and current.view is not None
+    editor = current.view.editor  # type: ignore[attr-defined]
+    assert editor.get_main_cursor_position().line == event.line - 1 and not typing(bare.bench.files)
     bare.click("≠ First difference")
-    assert tracing.caret.line in (4, 5)
-    bare.click("##slide", 0.0)  # of the first in sight: the calls of march
-    assert tracing.view.selection.calls and tracing.view.rows(FILE)[0].head is not None
-    start = tracing.view.rows(FILE)[0].head.number
-    assert start == 1
-    tracing.message = "a texel that is not there"
-    tracing.view = None
+    bare.run_frames(3)
+    assert tracing.caret.line in (4, 5) and editor.get_main_cursor_position().line == tracing.caret.line - 1
+    bare.click("##call", 0.0)
+    head = tracing.view.rows(str(file))[0].head
+    assert tracing.view.selection.calls and head is not None and head.number == 1
+    bare.click("##spark", 0.0)
+    assert 0 in tracing.view.selection.iterations.values()
+    editor.select_region(DocPos(3, 8), DocPos(3, 11))
+    bare.run_frames(2)
+    assert (tracing.caret.line, tracing.probe.expression) == (4, "far")
+    tracing.message, tracing.view = "a texel that is not there", None
     bare.run_frames(2)
 
 
@@ -370,25 +399,25 @@ def test_words_and_series_of_the_window() -> None:
     assert points[0][1] > points[-1][1], "y goes down"
 
 
-def test_the_window_of_a_trace_draws_and_esc_closes_it(bare: Bare) -> None:
-    bench, panel = bare.bench, TracePanel()
-    draw = bare.draw
+def test_t_opens_the_pane_and_the_strip_and_esc_closes_them(bare: Bare) -> None:
+    bench = bare.bench
     bench.session.show("height:height")
-
-    def with_trace() -> None:
-        draw()
-        bench.tracing.update(bare.picture)
-        panel.draw(bench.tracing, bare.theme, (330.0, 0.0, 950.0, 720.0))
-
-    bare.draw = with_trace
-    bare.key(imgui.Key.t)
-    assert bench.tracing.on and "move the mouse" in title_of(bench.tracing)
-    bench.tracing.choice.pin = 0.5, 0.3
+    bench.panes.show_code(False)
+    bench.panes.show_strip(shown=False)
+    draw_too(bare, lambda: bench.tracing.update(bare.picture))
     bare.run_frames(4)
+    bare.key(imgui.Key.t)
+    assert bench.tracing.on and "a click on the picture pins" in state_of(bench.tracing)[0]
+    bench.tracing.choice.pin = 0.5, 0.3
+    bare.run_frames(6)
+    assert bench.panes.code_is_open and bench.panes.is_open("strip", narrow=False)
     assert bench.tracing.view is not None and "bit for bit" in state_of(bench.tracing)[0]
-    assert {"Keep", "##slide", "##probe"} <= set(bare.places)
+    assert bench.files.current is not None and str(bench.files.current.text.path) == bench.tracing.caret.file
+    assert {"Keep", "##turn", "##probe"} <= set(bare.places)
     bare.click("Keep")
     assert bench.tracing.compared.beside is Beside.KEPT
     assert open_layers(bench) == ["trace"]
     close_one(bench)
-    assert not bench.tracing.on
+    bare.run_frames()
+    assert not bench.tracing.on and not bench.panes.code_is_open
+    assert not bench.panes.is_open("strip", narrow=False)

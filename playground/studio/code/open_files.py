@@ -147,6 +147,7 @@ class Editing:
     line: int = 1
     column: int = 1
     focus: bool = True  # it is to come to the front, at its line
+    takes_keys: bool = True  # with that it gets the keys
     view: TextView | None = None  # None until it is drawn for the first time
     typed_before: str | None = None  # what was typed when the window was closed, where it is not saved
     is_older: bool = False  # than what the file holds: one undo away
@@ -295,7 +296,18 @@ class OpenFiles:
         if all(other is not editing for other in self.editing):
             self.editing.append(editing)
         editing.line, editing.column, editing.focus = max(line, 1), max(column, 1), True
+        editing.takes_keys = True
         self.show()
+
+    def reveal(self, path: Path, line: int) -> None:
+        """Show a line of a file in the code pane, without giving it the keys."""
+        try:
+            editing = self.tab_of(path)
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return
+        editing.line, editing.column, editing.focus = max(line, 1), 1, True
+        editing.takes_keys = False
 
     def follow(self, path: Path, sketch: Sketch | None) -> None:
         """Have the tabs of the sketch in a file, once it is shown: its own file, and its own kernels.

@@ -40,6 +40,7 @@ from playground.studio.language import tr
 from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named
 from playground.studio.theme import Theme
+from playground.studio.trace.values_panel import draw_values, follow_caret
 
 if TYPE_CHECKING:
     from playground.sketch.suggestions import Suggestion
@@ -356,7 +357,8 @@ def _take_or_leave_keys(files: OpenFiles) -> None:
     """Take the keys by a click or where it was asked for, not because another window has closed."""
     now, all_of_it = imgui.get_frame_count(), imgui.HoveredFlags_.root_and_child_windows
     hovered = imgui.is_window_hovered(all_of_it | imgui.HoveredFlags_.allow_when_blocked_by_active_item)
-    if any(editing.focus for editing in files.editing) or (imgui.is_mouse_clicked(0) and hovered):
+    asked = any(editing.focus and editing.takes_keys for editing in files.editing)
+    if asked or (imgui.is_mouse_clicked(0) and hovered):
         files.pane.asked_at = now
     is_new = now - files.pane.asked_at <= _JUST
     if not imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
@@ -463,10 +465,12 @@ def _draw_text(
         _choose_completion(view)
     if editing.focus:
         editing.focus = False
-        imgui.set_window_focus()
+        if editing.takes_keys:
+            imgui.set_window_focus()
         view.editor.set_cursor(_Pos(editing.line - 1, editing.column - 1))
         view.editor.scroll_to_line(editing.line - 1, text_edit.TextEditor.Scroll.align_middle)
-        view.editor.set_focus()
+        if editing.takes_keys:
+            view.editor.set_focus()
     find = files.pane.find
     in_field = imgui.is_any_item_active() or find.settles > 0
     find.settles = max(find.settles - 1, 0)
@@ -487,6 +491,8 @@ def _draw_text(
             _explain(editing, view, files, look)
         _draw_behind(view, look)
         view.sliders = _draw_values(editing, view, look, tracing) if tracing is not None else []
+    if tracing is not None and not any(other.focus for other in files.editing):
+        follow_caret(tracing, str(editing.text.path), view.editor)
     if below:
         _draw_mistake(view, look)
     if view.follow(imgui.get_time()):
@@ -633,56 +639,11 @@ def _draw_behind(view: _View, look: Theme) -> None:
 
 
 def _draw_values(editing: Editing, view: _View, look: Theme, tracing: Tracing) -> list[Area]:
-    """Write what a traced texel gave behind the lines that gave it, with a slider at each loop's head.
-
-    A line that reads otherwise than when it was traced has none. Returns where the sliders are.
-    """
-    trace, editor, places = tracing.view, view.editor, []
-    if trace is None or str(editing.text.path) not in trace.paths:
-        return []
+    """Draw what a traced texel gave behind the lines that gave it; return where that takes the mouse."""
     imgui.begin_child(_TEXT)  # as in ``_draw_behind``
-    corner, size, wide = imgui.get_window_pos(), imgui.get_window_size(), editor.get_glyph_width()
-    draw, right, high = (
-        imgui.get_window_draw_list(),
-        corner.x + size.x - 16 * look.scale,
-        editor.get_line_height(),
-    )
-    first, last = editor.get_first_visible_row(), editor.get_last_visible_row()
     wrong = {diagnostic.line for diagnostic in view.marked[1]}
-    dim = theme.packed(theme.palette.dim, 0.5 if tracing.is_stale or view.waits else 1.0)
-    for row in trace.rows(str(editing.text.path)):
-        line = row.number - 1
-        if not (row.items or row.loops) or row.number in wrong or line >= editor.get_line_count():
-            continue
-        text = editor.get_line_text(line)
-        end = _Pos(line, len(text))
-        if text.rstrip() != row.code.rstrip() or not first <= editor.doc_pos2_vis_pos(end).row <= last:
-            continue
-        place = editor.doc_pos2_screen_pos(end)
-        x = place.x + 3 * wide
-        for number, head in enumerate(row.loops):
-            if x + 16 * wide > right or head.count < 2:
-                continue
-            imgui.set_cursor_screen_pos(ImVec2(x, place.y + 1))
-            imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(3, 0))
-            imgui.set_next_item_width(16 * wide)
-            words = tr("turn {number} of {count}", number="%d", count=head.count)
-            label = f"##turn {row.number} {number}"
-            moved, chosen = imgui.slider_int(label, head.chosen + 1, 1, head.count, words)
-            imgui.pop_style_var()
-            if moved:
-                trace.choose_iteration(head, chosen - 1)
-            places.append((x, place.y, x + 16 * wide, place.y + high))
-            x += 17 * wide
-        words = "   ".join(f"{item.name} = {item.text}" if item.name else item.text for item in row.items)
-        room = int((right - x) / wide)
-        if words and room > 5:
-            is_finite = all(item.is_finite for item in row.items)
-            ink = dim if is_finite else theme.packed(theme.palette.alarm)
-            draw.add_text(ImVec2(x, place.y), ink, _cut(words, room))
-            whole = ImVec2(x + min(len(words), room) * wide, place.y + high)
-            if imgui.is_mouse_hovering_rect(ImVec2(x, place.y), whole):
-                imgui.set_tooltip("\n".join(f"{item.name}: {item.full}" for item in row.items))
+    path = str(editing.text.path)
+    places = draw_values(tracing, path, view.editor, wrong, view.waits, look)
     imgui.end_child()
     return places
 
