@@ -358,8 +358,11 @@ def _take_or_leave_keys(files: OpenFiles) -> None:
     now, all_of_it = imgui.get_frame_count(), imgui.HoveredFlags_.root_and_child_windows
     hovered = imgui.is_window_hovered(all_of_it | imgui.HoveredFlags_.allow_when_blocked_by_active_item)
     asked = any(editing.focus and editing.takes_keys for editing in files.editing)
-    if asked or (imgui.is_mouse_clicked(0) and hovered):
+    is_clicked = hovered and (imgui.is_mouse_clicked(0) or imgui.is_mouse_clicked(1))
+    if asked or is_clicked:
         files.pane.asked_at = now
+    if is_clicked and not files.pane.has_keys and files.current is not None:
+        _view_of(files.current).editor.set_focus()  # a right click alone does not
     is_new = now - files.pane.asked_at <= _JUST
     if not imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
         files.pane.has_keys = files.pane.has_keys and is_new

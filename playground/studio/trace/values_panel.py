@@ -10,7 +10,6 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import pairwise
 
 from imgui_bundle import ImVec2, imgui
@@ -24,7 +23,7 @@ from playground.studio.trace.rows import FunctionHead, Item, LoopHead, Row, Trac
 from playground.studio.trace.tracing import Tracing
 from playground.studio.widgets import slide_whole
 
-_SLIDER, _SPARK, _COVER = 10, 8, 20  # [letters] widths, the last of the code that values may cover
+_SLIDER, _SPARK, _COVER = 10, 8, 24  # [letters] widths, the last of the code that values may cover
 _Pos = text_edit.TextEditor.DocPos
 
 
@@ -166,7 +165,7 @@ class _Lines:
             imgui.set_cursor_screen_pos(ImVec2(spot.x, spot.y))
             imgui.set_next_item_width(wide * self.wide)
             if not word:
-                slid = slide_whole(f"##{label}", number, (1, count), partial(_of, count))
+                slid = slide_whole(f"##{label}", number, (1, count), lambda n: f"{n}/{count}")
                 chosen = chosen if slid is None else slid
                 imgui.set_item_tooltip(note)
             elif imgui.button(f"{word}##{label}", ImVec2(wide * self.wide, self.high)):
@@ -244,10 +243,6 @@ class _Lines:
     def _text(self, spot: _Spot, text: str, ink: theme.Rgb) -> None:
         self.sink.add_text(ImVec2(spot.x, spot.y), theme.packed(ink, self.alpha), text)
         spot.x += (len(text) + 1) * self.wide
-
-
-def _of(count: int, number: int) -> str:
-    return tr("{number} of {count}", number=number, count=count)
 
 
 def _pieces(item: Item) -> list[tuple[str, theme.Rgb]]:
