@@ -15,6 +15,7 @@ from playground.studio.code.editors import Opener
 from playground.studio.code.open_files import OpenFiles, is_changed
 from playground.studio.code.unsaved_texts import KeptTexts
 from playground.studio.edits.autosave import Autosave
+from playground.studio.edits.history import Typed
 from playground.studio.edits.undo import Undo
 from playground.studio.graph.edits import PassEdits
 from playground.studio.inspect.inspection import Inspection
@@ -74,7 +75,10 @@ class Workbench:
             take_typed=session.drafts.take_typed,
             show=self.panes.show_code,
             copy_in=self._copy_in,
+            step=lambda by: self.undo.go(by, self._text()),
         )
+        self.undo.seen = lambda: self._text() if self.panes.code_is_open else None
+        self.file.show_written = lambda paths: self.files.take_saved(paths, is_own=True)
         self.tabs: list[Tab] = []  # of the strip below the picture
         self._before_trace: tuple[bool, bool] | None = None  # code and strip were open; None: no trace
         self.additions: list[Addition] = []  # of the rooms that can be removed
@@ -131,6 +135,10 @@ class Workbench:
         if self.tracing.on and caret.is_asked:
             caret.is_asked = False
             self.files.reveal(Path(caret.file), caret.line)
+
+    def _text(self) -> Typed | None:
+        """Return the text of the code pane."""
+        return self.files.current.view if self.files.current is not None else None
 
     def _save_typed_sketch(self) -> None:
         """Save what is typed in the sketch's own file: values, keyframes and passes are written into that."""

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import os
+import random
 import re
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from imgui_bundle import imgui
+from imgui_bundle import imgui_color_text_edit as text_edit
 
 from playground.engine.engine import Engine
 from playground.paths import GLSL
@@ -517,3 +520,125 @@ def test_values_stand_behind_the_lines_with_a_slider_for_a_loop(pane: Pane, fold
     pane.places.clear()
     pane.run_frames(2)
     assert "##turn" in pane.places, "other lines keep theirs"
+
+
+# ── one order of undo for text, passes and values ─────────────────────────────
+
+
+@dataclass
+class Timeline:
+    """What is done in one window, and what it shows after each step."""
+
+    pane: Pane
+    shown: list[object] = field(default_factory=list)
+    words: int = 0
+
+    def __post_init__(self) -> None:
+        self.pane.bench.files.open(self.file, 1, 1, here=True)
+        self.pane.run_frames(4)
+        self.shown = [self.state]
+
+    @property
+    def file(self) -> Path:
+        return self.pane.session.path
+
+    @property
+    def state(self) -> object:
+        """The text in the pane, and the values that are set."""
+        shown = self.pane.session.shown
+        assert shown is not None
+        return self.pane.editor("sketch.toml").get_text(), shown.edits.values
+
+    def rest(self) -> None:
+        self.pane.run_frames(WAITS)
+        self.pane.run_frames(4, step=0.3)
+
+    def type(self) -> None:
+        self.words += 1
+        editor = self.pane.editor("sketch.toml")
+        editor.set_cursor(text_edit.TextEditor.DocPos(self.words % 2, 0))
+        self.pane.type(f"#{self.words}")
+        self.pane.key(imgui.Key.enter)
+
+    def edit_passes(self) -> None:
+        assert self.pane.bench.passes.duplicate("height")
+
+    def set_value(self) -> None:
+        self.words += 1
+        self.pane.session.drafts.set("height.level", round(0.5 + 0.001 * self.words, 3))
+
+    def save_outside(self) -> None:
+        self.words += 1
+        text = self.file.read_text(encoding="utf-8")
+        self.file.write_text(f"{text}# {self.words} of another program\n", encoding="utf-8")
+        self.pane.session.drafts.reload()
+        self.pane.bench.files.take_saved({self.file})
+
+    def do(self, act: Callable[[], None]) -> None:
+        act()
+        self.rest()
+        self.shown.append(self.state)
+
+    def save(self) -> None:
+        self.pane.key(imgui.Key.mod_ctrl, imgui.Key.s)
+        self.rest()
+        assert self.state == self.shown[-1]
+
+    def go(self, by: int) -> object:
+        self.pane.key(imgui.Key.mod_ctrl, imgui.Key.z if by < 0 else imgui.Key.y)
+        self.rest()
+        return self.state
+
+    def there_and_back(self) -> None:
+        """Undo everything, step by step, and redo it."""
+        for state in reversed(self.shown[:-1]):
+            while (now := self.go(-1)) != state and now in self.shown:
+                pytest.fail(f"{now} came before {state}")
+            while now != state:  # a letter typed after a pause is a step of its own
+                before, now = now, self.go(-1)
+                assert now != before, f"{state} is lost; seen last: {now}"
+        for state in self.shown[1:]:
+            now = self.go(1)
+            while now != state:
+                before, now = now, self.go(1)
+                assert now != before, f"{state} is lost; seen last: {now}"
+
+
+def test_one_undo_for_what_is_typed_and_edited_in_the_graph(pane: Pane) -> None:
+    line = Timeline(pane)
+    for act in (line.type, line.edit_passes, line.set_value, line.type, line.edit_passes):
+        line.do(act)
+    line.there_and_back()
+    text, values = cast("tuple[str, Any]", line.shown[0])
+    pane.key(imgui.Key.escape)  # the keys are the window's
+    for _ in range(12):
+        line.go(-1)
+    assert line.state == (text, values)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_undo_goes_back_in_the_order_of_time(pane: Pane, seed: int) -> None:
+    """Typing, passes, values, saves here and elsewhere, in any order: each is there again, none is lost."""
+    line, chance = Timeline(pane), random.Random(seed)
+    for _ in range(9):
+        act = chance.choice((line.type, line.edit_passes, line.set_value, line.save, line.save_outside))
+        if act == line.save:
+            line.save()
+        elif act == line.save_outside and unsaved(pane.bench.files.editing):
+            continue  # what is typed is one undo away then: see test_problems
+        else:
+            line.do(act)
+    line.there_and_back()
+
+
+def test_what_is_done_anew_ends_what_could_be_redone(pane: Pane) -> None:
+    line = Timeline(pane)
+    line.do(line.edit_passes)
+    line.go(-1)
+    line.do(line.type)
+    state = line.state
+    assert line.go(1) == state, "the pass is not written into another text"
+    line.go(-1)
+    line.do(line.set_value)
+    state = line.state
+    assert line.go(1) == state

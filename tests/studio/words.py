@@ -10,11 +10,8 @@ from pathlib import Path
 import playground
 
 ROOT = Path(playground.__file__).resolve().parent
-LEFT_OUT = {ROOT / "publish" / "window"}
-"""Folders whose words are not looked at."""
 MODULES = sorted(
     {*(ROOT / "studio").rglob("*.py"), *ROOT.glob("*/window/*.py"), *ROOT.glob("*/addition.py")}
-    - {path for folder in LEFT_OUT for path in folder.rglob("*.py")}
 )
 """The modules of the window, and those that rooms add to it."""
 

@@ -149,7 +149,7 @@ def _sizes(settings: ShowSettings) -> None:
         "typed": tr("typed"),
     }
     if settings.kind == SHEET:
-        names = {size: names[size] for size in ("1", "2", "typed")}
+        names = {size: name for size, name in names.items() if size not in SCREENS}
     with row(tr("Size"), tr("A picture larger than a texture is drawn in parts")):
         current = settings.size if settings.size in names else "1"
         size = choose("###size", fitting_choice(names[current]), names, current, name=names.__getitem__)

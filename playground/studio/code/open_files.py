@@ -26,6 +26,7 @@ from playground.sketch.model import Sketch
 from playground.studio.code.editors import Opener, find_editor
 from playground.studio.code.names import Names
 from playground.studio.code.unsaved_texts import KeptTexts, hash_of_text
+from playground.studio.edits.history import Typed
 from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.problems.problems import Problems
@@ -122,7 +123,7 @@ class OpenText:
             raise DataError(reason(error), file=shown(self.path)) from None
 
 
-class TextView(Protocol):
+class TextView(Typed, Protocol):
     """What shows an open file and takes what is typed."""
 
     @property
@@ -132,8 +133,8 @@ class TextView(Protocol):
     def written(self) -> str:
         """Return the text as it is in the editor."""
 
-    def replace(self, text: str) -> None:
-        """Replace the text as one step that can be undone."""
+    def replace(self, text: str, *, is_own: bool = False) -> None:
+        """Replace the text as one step that can be undone; ``is_own``: the window wrote it itself."""
 
     def note_saved(self) -> None:
         """Take in that the text as it is now is that of the file."""
@@ -252,6 +253,7 @@ class OpenFiles:
     take_typed: Callable[[Path, str | None], None] = lambda path, text: None  # draws it; None: the file
     show: Callable[[], None] = lambda: None  # opens the code pane
     copy_in: Callable[[Path], None] = lambda path: None  # makes a file of the library the sketch's own
+    step: Callable[[int], None] = lambda by: None  # undoes or redoes what came last, of any kind
     names: Names = field(init=False)
     pane: PaneState = field(default_factory=PaneState)
     sketch: Sketch | None = None  # that is shown
@@ -409,8 +411,11 @@ class OpenFiles:
             self.kept.forget(editing.text.path)
             self.take_typed(editing.text.path, None)
 
-    def take_saved(self, changed: Collection[Path]) -> None:
-        """Show what others saved of open files; what is typed here and not saved is one undo away."""
+    def take_saved(self, changed: Collection[Path], *, is_own: bool = False) -> None:
+        """Show what others saved of open files; what is typed here and not saved is one undo away.
+
+        ``is_own``: the window saved it, as a step of its own or as a step that was undone.
+        """
         for editing in self.editing:
             text, view = editing.text, editing.view
             if text.path not in changed or not text.needs_saving or not text.changed_outside():
@@ -421,14 +426,14 @@ class OpenFiles:
             except PlaygroundError:  # it is gone, or no text: what is typed stays
                 continue
             if view is not None and theirs != mine:
-                view.replace(theirs)
+                view.replace(theirs, is_own=is_own)
             if view is not None:
                 view.note_saved()
             if was_changed:
                 editing.is_older = True
                 self.kept.forget(text.path)
                 self.take_typed(text.path, None)
-                if theirs != mine:
+                if theirs != mine and not is_own:
                     note = "{file} was saved by others; undo brings back what was typed"
                     self.notices.say(tr(note, file=text.path.name))
 

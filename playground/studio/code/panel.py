@@ -7,11 +7,12 @@ pauses.
 
 from __future__ import annotations
 
+import math
 import re
 import textwrap
 from bisect import bisect_left, bisect_right
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -151,10 +152,13 @@ class _View:
 
     editor: text_edit.TextEditor
     step: str  # one step of indentation
+    clock: Callable[[], float]  # [s]
     saved_at: int = 0  # the editor's undo index when its text was that of the file
     index: int = 0  # its undo index in the last frame
     steps: list[int] = field(default_factory=list)  # undo indices between words and pauses, in order
-    typed_at: float = 0.0  # [s] of imgui's clock
+    made: dict[int, float] = field(default_factory=dict)  # [s] when the text of an undo index was made
+    own: set[int] = field(default_factory=set)  # undo indices of texts that the window wrote itself
+    typed_at: float = 0.0  # [s]
     waits: bool = False  # what is typed is not drawn yet
     marked: tuple[object, tuple[Diagnostic, ...]] = (None, ())
     closing: bool = False  # a question is shown: save or not
@@ -173,7 +177,9 @@ class _View:
     def written(self) -> str:
         return self.editor.get_text()
 
-    def replace(self, text: str) -> None:
+    def replace(self, text: str, *, is_own: bool = False) -> None:
+        if is_own and any(self._goes_to(text, by) for by in (-1, 1)):
+            return
         is_fixed = self.editor.is_read_only_enabled()
         self.editor.set_read_only_enabled(False)
         at = self.editor.get_main_cursor_position()
@@ -183,7 +189,20 @@ class _View:
         line = min(at.line, self.editor.get_line_count() - 1)
         self.editor.set_cursor(_Pos(line, min(at.index, len(self.editor.get_line_text(line)))))
         self.editor.set_read_only_enabled(is_fixed)
-        self.note_step(before)
+        self.note_step(before, is_own=is_own)
+
+    def _goes_to(self, text: str, by: int) -> bool:
+        """Go a step back (-1) or on (1) that the window made itself, where that leads to a text."""
+        before = self.editor.get_undo_index()
+        if (before if by < 0 else self._goal(by)) not in self.own:
+            return False
+        self._go(by)
+        if self.editor.get_text() == text:
+            return True
+        while self.editor.get_undo_index() != before:
+            self.editor.undo() if by > 0 else self.editor.redo()
+        self.index = before
+        return False
 
     def apply(self, edits: Sequence[tuple[int, int, str]]) -> tuple[int, int]:
         """Replace parts of the text as one step; return its undo index before and after."""
@@ -195,80 +214,81 @@ class _View:
         self.editor.set_cursor(_Pos(at.line, min(at.index, length)))
         self.note_step(before)
         self.marked = (None, self.marked[1])  # what is replaced has lost its markers
-        self.waits, self.typed_at = True, imgui.get_time()
+        self.waits, self.typed_at = True, self.clock()
         return before, self.index
 
     def note_saved(self) -> None:
         self.saved_at = self.editor.get_undo_index()
         self.waits = False
 
-    def undo(self) -> None:
-        """Undo what was typed since the last end of a word, pause or other change.
+    def go(self, by: int) -> None:
+        """Undo (-1) what was typed since the last end of a word, pause or other change; or redo it (1).
 
         What changed other files with this one is undone in those, too, where nothing was typed since.
         """
         now = self.editor.get_undo_index()
-        step = next((step for step in self.shared if step[self][1] == now), {self: (0, now)})
-        for view, (_, after) in step.items():
-            if view.editor.get_undo_index() == after:
-                view._undo()
-                view._note_moved()
+        step = next((step for step in self.shared if step[self][by < 0] == now), {self: (now, now)})
+        for view, ends in step.items():
+            if view.editor.get_undo_index() == ends[by < 0]:
+                view._go(by)
+                view.waits, view.typed_at = True, view.clock()
+                view.completion.close()
 
-    def redo(self) -> None:
-        """Do again what ``undo`` took back last."""
-        now = self.editor.get_undo_index()
-        step = next((step for step in self.shared if step[self][0] == now), {self: (now, 0)})
-        for view, (before, _) in step.items():
-            if view.editor.get_undo_index() == before:
-                view._redo()
-                view._note_moved()
-
-    def _note_moved(self) -> None:
-        """Take in an undo or a redo, which completes nothing."""
-        self.index = self.editor.get_undo_index()
-        self.waits, self.typed_at = True, imgui.get_time()
-        self.completion.close()
-
-    def _undo(self) -> None:
-        at = bisect_left(self.steps, self.editor.get_undo_index())
-        goal = self.steps[at - 1] if at else 0
-        while self.editor.can_undo() and self.editor.get_undo_index() > goal:
+    def _go(self, by: int) -> None:
+        goal = self._goal(by)
+        while by < 0 and self.editor.can_undo() and self.editor.get_undo_index() > goal:
             self.editor.undo()
-
-    def _redo(self) -> None:
-        at = bisect_right(self.steps, self.editor.get_undo_index())
-        goal = self.steps[at] if at < len(self.steps) else None
-        while self.editor.can_redo() and (goal is None or self.editor.get_undo_index() < goal):
+        while by > 0 and self.editor.can_redo() and self.editor.get_undo_index() < goal:
             self.editor.redo()
+        self.index = self.editor.get_undo_index()
+
+    def _goal(self, by: int) -> int:
+        """Return the undo index of the last end of a word, pause or other change, or with 1 of the next."""
+        index = self.editor.get_undo_index()
+        if by < 0:
+            at = bisect_left(self.steps, index)
+            return self.steps[at - 1] if at else 0
+        at = bisect_right(self.steps, index)
+        return self.steps[at] if at < len(self.steps) else max(self.made, default=index)
 
     def offset(self, place: text_edit.TextEditor.DocPos) -> int:
         """Return where a place is in the text."""
         lines = self.written().split("\n")[: place.line]
         return sum(len(line) + 1 for line in lines) + place.index
 
-    def follow(self, now: float) -> bool:
+    def time(self, by: int) -> float | None:
+        if not (self.editor.can_redo() if by > 0 else self.editor.can_undo()):
+            return None
+        at = self._goal(1) if by > 0 else self.editor.get_undo_index()
+        return math.inf if by > 0 and at in self.own else self.made.get(at, 0.0)
+
+    def follow(self) -> bool:
         """Take in what was typed in the last frame; return whether there was anything."""
-        index = self.editor.get_undo_index()
+        index, now = self.editor.get_undo_index(), self.clock()
         if index == self.index:
             return False
-        if index > self.index and index not in self.steps:  # else it was undone, or done again
-            self._forget_shared(self.index)
+        if index > self.index:
             begins = [at for at in range(self.index, index) if self._begins_word(index - at - 1)]
             if now - self.typed_at > _PAUSE and self.index not in begins:
                 begins.insert(0, self.index)
-            if begins:
-                self.steps = [*self.steps[: bisect_left(self.steps, begins[0])], *begins]
+            self.steps = [*(step for step in self.steps if step < min(begins, default=index)), *begins]
+            self._forget_after(self.index)
+            self.made |= dict.fromkeys(range(self.index + 1, index + 1), now)
         self.index, self.typed_at = index, now
         return True
 
-    def note_step(self, before: int) -> None:
+    def note_step(self, before: int, *, is_own: bool = False) -> None:
         """Make what changed since an undo index a step of undo of its own."""
-        self._forget_shared(before)
         self.index = self.editor.get_undo_index()
         self.steps = [*(step for step in self.steps if step < before), before, self.index]
+        self._forget_after(before)
+        self.made[self.index] = self.made.get(before, 0.0) if is_own else self.clock()
+        self.own |= {self.index} if is_own else set()
 
-    def _forget_shared(self, index: int) -> None:
-        """Forget the steps of several files that were undone: what is typed takes their place."""
+    def _forget_after(self, index: int) -> None:
+        """Forget what could be done again after an undo index: something else was done."""
+        self.made = {at: time for at, time in self.made.items() if at <= index}
+        self.own = {at for at in self.own if at <= index}
         self.shared = [step for step in self.shared if step[self][1] <= index]
 
     def _begins_word(self, since: int) -> bool:
@@ -286,7 +306,7 @@ def _place_of(text: str, offset: int) -> text_edit.TextEditor.DocPos:
     return _Pos(text.count("\n", 0, offset), offset - start)
 
 
-def _view_of(editing: Editing) -> _View:
+def _view_of(editing: Editing, files: OpenFiles) -> _View:
     if not isinstance(editing.view, _View):
         editor, language = text_edit.TextEditor(), text_edit.TextEditor.Language
         # It has none for TOML: what Python's colours are comments, strings, numbers.
@@ -300,7 +320,8 @@ def _view_of(editing: Editing) -> _View:
         editor.set_find_replace_enabled(False)  # its box is cut off in a narrow pane, and text shines through
         editor.set_text(editing.text.base)
         editor.set_insert_spaces_on_tabs(step != "\t")
-        view = editing.view = _View(editor, step, editor.get_undo_index(), editor.get_undo_index())
+        index, clock = editor.get_undo_index(), files.notices.now
+        view = editing.view = _View(editor, step, clock, index, index)
         if editing.typed_before is not None:
             view.replace(editing.typed_before)
         if editing.is_older:
@@ -342,11 +363,13 @@ def draw_code(files: OpenFiles, problems: Problems, look: Theme, tracing: Tracin
         _draw_text(seen, files, problems, look, tracing if tracing is not None and tracing.on else None)
     waiting = [e for e in files.editing if isinstance(e.view, _View) and e.view.waits]
     for editing in waiting:
-        view = _view_of(editing)
-        if imgui.get_time() - view.typed_at >= PATIENCE:
+        view = _view_of(editing, files)
+        if files.notices.now() - view.typed_at >= PATIENCE or editing is not seen:
             view.waits = False
             files.draw_typed(editing)
-    left = [PATIENCE - imgui.get_time() + view.typed_at for e in waiting if (view := _view_of(e)).waits]
+    left = [
+        PATIENCE - files.notices.now() + view.typed_at for e in waiting if (view := _view_of(e, files)).waits
+    ]
     files.pane.draws_in = max(min(left), 0.0) if left else None
 
 
@@ -362,7 +385,7 @@ def _take_or_leave_keys(files: OpenFiles) -> None:
     if asked or is_clicked:
         files.pane.asked_at = now
     if is_clicked and not files.pane.has_keys and files.current is not None:
-        _view_of(files.current).editor.set_focus()  # a right click alone does not
+        _view_of(files.current, files).editor.set_focus()  # a right click alone does not
     is_new = now - files.pane.asked_at <= _JUST
     if not imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
         files.pane.has_keys = files.pane.has_keys and is_new
@@ -382,7 +405,7 @@ def draw_questions(files: OpenFiles) -> None:
 
 def ask_to_close(editing: Editing, files: OpenFiles) -> None:
     """Close an open file; one with changes that are not saved needs an answer first."""
-    view = _view_of(editing)
+    view = _view_of(editing, files)
     if view.changed and editing.text.needs_saving:
         view.closing = True
     else:
@@ -419,7 +442,7 @@ def give_back_keys(files: OpenFiles) -> None:
 
 def _draw_tab(editing: Editing, files: OpenFiles) -> bool:
     """Draw the tab of one file; return whether it is the one that is seen."""
-    view, flags = _view_of(editing), 0
+    view, flags = _view_of(editing, files), 0
     if view.changed and editing.text.needs_saving:
         flags |= imgui.TabItemFlags_.unsaved_document
     if editing.focus or (files.current is editing and files.pane.jumps):
@@ -452,7 +475,7 @@ def _draw_others(files: OpenFiles) -> None:
 def _draw_text(
     editing: Editing, files: OpenFiles, problems: Problems, look: Theme, tracing: Tracing | None
 ) -> None:
-    view = _view_of(editing)
+    view = _view_of(editing, files)
     if view.is_light is not theme.palette.is_light:
         view.is_light = theme.palette.is_light
         of = text_edit.TextEditor
@@ -498,7 +521,7 @@ def _draw_text(
         follow_caret(tracing, str(editing.text.path), view.editor)
     if below:
         _draw_mistake(view, look)
-    if view.follow(imgui.get_time()):
+    if view.follow():
         view.waits = True
         _complete(editing, view, files)
     _draw_completion(view, look)
@@ -512,10 +535,10 @@ def _take_keys(editing: Editing, view: _View, files: OpenFiles) -> None:
         if imgui.is_key_pressed(imgui.Key.f, False):
             _open_find(view, files)
         in_field = imgui.is_any_item_active()
-        for key, act in ((imgui.Key.z, view.undo), (imgui.Key.y, view.redo)):
+        for key, by in ((imgui.Key.z, -1), (imgui.Key.y, 1)):
             if imgui.is_key_pressed(key) and not in_field:
                 imgui.internal.set_key_owner(key, _OWNER, imgui.internal.InputFlagsPrivate_.lock_this_frame)
-                (view.redo if imgui.get_io().key_shift else act)()
+                files.step(1 if imgui.get_io().key_shift else by)
     if imgui.is_key_pressed(imgui.Key.f3) and files.pane.find.text:
         _find_next(view, files.pane.find)
     if imgui.is_key_pressed(imgui.Key.f12, False):
@@ -582,8 +605,8 @@ def _draw_bar(editing: Editing, view: _View, files: OpenFiles, look: Theme) -> N
     note = tr("Ctrl+S; what is typed is drawn at once, and kept here until it is saved")
     buttons(
         (f"{tr('Save')}###save code", note, lambda: files.save(editing), view.changed),
-        (f"{tr('Undo')}###undo code", "Ctrl+Z", view.undo, view.editor.can_undo()),
-        (f"{tr('Redo')}###redo code", "Ctrl+Y", view.redo, view.editor.can_redo()),
+        (f"{tr('Undo')}###undo code", "Ctrl+Z", lambda: files.step(-1), view.editor.can_undo()),
+        (f"{tr('Redo')}###redo code", "Ctrl+Y", lambda: files.step(1), view.editor.can_redo()),
         (f"{tr('Find')}###find code", "Ctrl+F", partial(_open_find, view, files), True),
         small=True,
     )
@@ -750,7 +773,7 @@ def _replace(view: _View, find: Find, *, all_of_them: bool = False) -> None:
         editor.replace_text_in_current_cursor(find.new)
     if editor.get_undo_index() != before:
         view.note_step(before)
-        view.waits, view.typed_at = True, imgui.get_time()
+        view.waits, view.typed_at = True, view.clock()
         view.marked = (None, view.marked[1])
     if not all_of_them:
         _find_next(view, find)
@@ -834,7 +857,7 @@ def _accept(view: _View, suggestion: Suggestion) -> None:
         lines = int(row <= at.line)
     editor.set_cursor(_Pos(at.line + lines, start.index + len(label)))
     view.note_step(before)
-    view.waits, view.typed_at = True, imgui.get_time()
+    view.waits, view.typed_at = True, view.clock()
     shown.close()
 
 
@@ -999,7 +1022,7 @@ def _rename(editing: Editing, view: _View, files: OpenFiles, asked: _Renaming) -
     folder = Path(sketch.folder) if sketch is not None else path.parent
     try:
         edits = files.names.rename(path, view.written(), asked.at, asked.new.strip(), folder)
-        changes = {_view_of(files.tab_of(file)): some for file, some in edits.items()}
+        changes = {_view_of(files.tab_of(file), files): some for file, some in edits.items()}
     except PlaygroundError as error:
         return error.diagnostics[0].message
     step = {each: each.apply(some) for each, some in changes.items()}

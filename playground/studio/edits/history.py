@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Protocol, cast
 
 from playground.sketch.model import Camera, Value
 from playground.studio.edits.edits import Edits
@@ -83,6 +83,19 @@ def steps_of(state: State) -> dict[str, int]:
     return {path: cast(int, step) for (kind, path), step in state.items() if kind == "step"}
 
 
+class Typed(Protocol):
+    """A text that is typed, with steps of its own."""
+
+    def time(self, by: int) -> float | None:
+        """Return when what is undone (-1) or redone (1) next was typed; None for nothing.
+
+        What the window wrote itself has the time of what was typed before; it is redone last.
+        """
+
+    def go(self, by: int) -> None:
+        """Undo (-1) or redo (1) what was typed last."""
+
+
 class History:
     """The steps so far, oldest first, and how many of them are done."""
 
@@ -106,6 +119,11 @@ class History:
     def can_redo(self) -> bool:
         """Whether there is a step to do again."""
         return self.done < len(self.steps)
+
+    def time(self, by: int) -> float | None:
+        """Return when the step went on last that is undone (-1) or redone (1) next; None for no step."""
+        at = self.done if by > 0 else self.done - 1
+        return self.steps[at].at if 0 <= at < len(self.steps) else None
 
     def call(self, name: str) -> None:
         """Give the next change a name, for one that its parts would not explain."""

@@ -9,7 +9,16 @@ from pathlib import Path
 
 from playground.studio.clock import stepped, toggle_loop
 from playground.studio.edits.edits import Edits
-from playground.studio.edits.history import TEXT, History, Key, State, TextChange, changes_between, steps_of
+from playground.studio.edits.history import (
+    TEXT,
+    History,
+    Key,
+    State,
+    TextChange,
+    Typed,
+    changes_between,
+    steps_of,
+)
 from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.paint.painting import Painting
@@ -29,6 +38,7 @@ class Undo:
     _history: History = field(default_factory=History)
     _next: tuple[Path, History] | None = None  # of a sketch that is being opened
     held: bool = False  # a mouse button is down: what changes is one step
+    seen: Callable[[], Typed | None] = lambda: None  # the text that is seen in the code pane
 
     @property
     def history(self) -> History:
@@ -103,8 +113,8 @@ class Undo:
         elif self.painting.on:
             self.painting.undo()
             self.notices.say(tr("took the last stroke back; put the brush down (B) to undo values"))
-        elif not self._go(-1):
-            self.notices.say(tr("nothing to undo"))
+        else:
+            self.go(-1, self.seen())
 
     def redo(self) -> None:
         """Redo the step that was undone last; while painting, the stroke."""
@@ -114,17 +124,40 @@ class Undo:
         elif self.painting.on:
             self.painting.redo()
             self.notices.say(tr("painted the stroke again; put the brush down (B) to redo values"))
-        elif not self._go(1):
-            self.notices.say(tr("nothing to redo"))
+        else:
+            self.go(1, self.seen())
 
-    def _go(self, by: int) -> bool:
-        """Undo (-1) or redo (1) a step; return False where there is none."""
+    def go(self, by: int, text: Typed | None) -> None:
+        """Undo (-1) or redo (1) what came last of the steps and of what was typed in a text.
+
+        What was undone before anything later was done is not done again.
+        """
         self.record()
         history = self.history
-        if not (history.can_redo if by > 0 else history.can_undo):
-            return False
-        self.go_to(history.done + by)
-        return True
+        steps, typed = history.time(by), text.time(by) if text is not None else None
+        if by > 0 and text is not None:
+            steps = steps if steps is not None and steps >= (text.time(-1) or 0.0) else None
+            typed = typed if typed is not None and typed >= (history.time(-1) or 0.0) else None
+        if text is not None and typed is not None and (steps is None or (typed - steps) * by < 0):
+            text.go(by)
+        elif steps is not None:
+            self.go_to(history.done + by)
+        else:
+            self.notices.say(tr("nothing to undo") if by < 0 else tr("nothing to redo"))
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is anything to undo: a step, or what was typed in the text that is seen."""
+        return self.history.can_undo or self._can_go(-1)
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is anything to redo."""
+        return self.history.can_redo or self._can_go(1)
+
+    def _can_go(self, by: int) -> bool:
+        text = self.seen()
+        return text is not None and text.time(by) is not None
 
     def go_to(self, done: int) -> None:
         """Undo or redo until so many steps are done, or one of them is refused."""

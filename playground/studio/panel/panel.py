@@ -277,10 +277,10 @@ def draw_search(memory: PanelState, ahead: TypedAhead) -> None:
 
 
 def _undo(memory: PanelState, undo: Undo, look: Theme) -> None:
-    history, paints = undo.history, undo.painting.on
+    paints = undo.painting.on
     buttons(
-        (tr("Undo"), shortcut("Ctrl+Z"), undo.undo, history.can_undo or paints),
-        (tr("Redo"), shortcut("Ctrl+Shift+Z, Ctrl+Y"), undo.redo, history.can_redo or paints),
+        (tr("Undo"), shortcut("Ctrl+Z"), undo.undo, undo.can_undo or paints),
+        (tr("Redo"), shortcut("Ctrl+Shift+Z, Ctrl+Y"), undo.redo, undo.can_redo or paints),
     )
     imgui.same_line()
     with menu(tr("History"), "history", tr("Every step; click on one to go there")) as opened:

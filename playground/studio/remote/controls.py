@@ -140,8 +140,8 @@ def state_of(bench: Workbench) -> dict[str, Any]:
         "speed": clock.speed,
         "moves": session.animated,
         "presets": [preset.name for preset in sketch.presets] if sketch is not None else [],
-        "can_undo": bench.undo.history.can_undo,
-        "can_redo": bench.undo.history.can_redo,
+        "can_undo": bench.undo.can_undo,
+        "can_redo": bench.undo.can_redo,
         "errors": errors_of(bench.problems),
     }
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from difflib import SequenceMatcher
@@ -245,9 +245,13 @@ class SketchFile:
     offer: str = ""  # why the sketch cannot be saved: a copy is offered
     asks: bool = False  # the offer is still to be shown
     save_typed: Callable[[], None] = lambda: None  # saves what is typed in the sketch's file
+    show_written: Callable[[Collection[Path]], None] = lambda paths: None  # in the code pane
 
-    def write(self, act: Callable[[], None]) -> bool:
-        """Write, and read the sketch again; return whether that worked. Else offer a copy or say why."""
+    def write(self, act: Callable[[], None], *paths: Path) -> bool:
+        """Write, and read the sketch again; return whether that worked. Else offer a copy or say why.
+
+        ``paths``: the files that are written, besides the sketch's own.
+        """
         drafts = self.session.drafts
         if drafts.opening:  # what is read again is the other
             name, other = shown(drafts.shown_path), shown(drafts.path)
@@ -270,12 +274,13 @@ class SketchFile:
             self.notices.say(str(error))
         else:
             drafts.reload()
+            self.show_written({drafts.path, *paths})
             return True
         return False
 
     def change_texts(self, changes: Mapping[Path, TextChange]) -> bool:
         """Change several files, or none; return whether that worked."""
-        return self.write(lambda: write_texts(changes))
+        return self.write(lambda: write_texts(changes), *changes)
 
 
 def merged(path: Path, data: bytes | None, change: TextChange) -> bytes | None:

@@ -137,7 +137,7 @@ class _Lines:
         note = tr("{name}: call {number} of {count}", name=head.key[1], number=head.number, count=head.count)
         if caller is not None:
             note = tr("{call}, by {name}", call=note, name=self.view.trace.calls[caller].function)
-        number = self._stepper("call", head.number, head.count, note, spot)
+        number = self._stepper("##call", head.number, head.count, note, spot)
         if number is not None:
             self.view.choose_call(head.key, number - 1)
 
@@ -146,7 +146,7 @@ class _Lines:
         if head.count > 1:
             words = "iteration {number} of {count}; Ctrl+click types one"
             note = tr(words, number=head.chosen + 1, count=head.count)
-            number = self._stepper("turn", head.chosen + 1, head.count, note, spot)
+            number = self._stepper("##turn", head.chosen + 1, head.count, note, spot)
             if number is not None:
                 self.view.choose_iteration(head, number - 1)
         letters = min((spot.right - spot.x) / self.wide - 2.5, _SPARK)
@@ -165,10 +165,10 @@ class _Lines:
             imgui.set_cursor_screen_pos(ImVec2(spot.x, spot.y))
             imgui.set_next_item_width(wide * self.wide)
             if not word:
-                slid = slide_whole(f"##{label}", number, (1, count), lambda n: f"{n}/{count}")
+                slid = slide_whole(label, number, (1, count), lambda n: f"{n}/{count}")
                 chosen = chosen if slid is None else slid
                 imgui.set_item_tooltip(note)
-            elif imgui.button(f"{word}##{label}", ImVec2(wide * self.wide, self.high)):
+            elif imgui.button(f"{word}{label}", ImVec2(wide * self.wide, self.high)):
                 chosen = min(max(number + (1 if word == ">" else -1), 1), count)
             spot.x += (wide + 0.3) * self.wide
         self.places.append((start, spot.y, spot.x, spot.y + self.high))
