@@ -11,6 +11,8 @@ def test_a_job_that_cannot_be_sent_ends_with_a_sentence(tmp_path: Path) -> None:
     def sketch() -> None:
         """Stand in for a sketch: what is defined inside a function cannot be pickled."""
 
+    sketch.name = "none"  # type: ignore[attr-defined]
+
     working = JobProcess(
         CaptureJob(kind=PICTURE, sketch=sketch, folder=tmp_path, ending=".png", size=(64, 64))  # type: ignore[arg-type]
     )

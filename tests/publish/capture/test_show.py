@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
+import playground
 from playground import cli
 from playground.data.image_files import read_png
 from playground.engine.engine import Engine
@@ -228,6 +229,17 @@ def test_a_turntable_closes_its_circle(land: Show) -> None:
     assert len({path.read_bytes() for path in frames}) == 4, "the last is not the first again"
 
 
+def test_a_turntable_begins_with_what_is_shown(land: Show) -> None:
+    land.session.exaggerate(3.0)
+    land.session.view.show_as(look_of("hillshade", land.session.plan))
+    land.session.frame(WIDE)
+    frame = land.session.read()
+    assert frame is not None
+    written = made(choose(land, TURNTABLE, "frames", around=0.5, fps=4))
+    assert np.array_equal(pixels(written.path / "00000.png"), frame.array)
+    assert not np.array_equal(pixels(written.path / "00001.png"), frame.array)
+
+
 def test_a_film_is_the_commands_and_follows_its_keyframes(
     show: Show, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -377,6 +389,12 @@ def test_a_page_is_the_exports_and_says_what_it_lacks(
     assert choose(land, PAGE).prospect.notes == (
         "A page has no exaggeration: heights are true in it, not ×2.",
     )
+    look, sketch = look_of("clay", land.session.plan), land.session.sketch
+    assert look is not None and sketch is not None
+    land.session.view.show_as(look)
+    land.session.exaggerate(1.0)
+    playground.export(look.of(sketch), "b.html", engine=land.session.engine)
+    assert made(land).path.read_bytes() == (folder / "b.html").read_bytes()
     try:
         choose_language("fr")
         assert land.job().options.language == "fr"
