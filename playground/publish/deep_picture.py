@@ -20,6 +20,7 @@ from playground.engine.plan import drawn_size
 from playground.engine.textures import read_texture
 from playground.errors import DataError
 from playground.files import write_file
+from playground.publish.large import max_side
 from playground.publish.texture_encoding import encode_exr
 from playground.shader.colours import linear_to_srgb, srgb_to_linear
 from playground.shader.kernel import with_inner
@@ -31,8 +32,7 @@ _BYTES = {"r8": "r32f", "rg8": "rg32f", "rgba8": "rgba32f"}
 
 def check_deep(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> None:
     """Raise ``PlaygroundError`` for a size in pixels in which no such picture can be drawn here."""
-    limits = ("GL_MAX_TEXTURE_SIZE", "GL_MAX_RENDERBUFFER_SIZE")
-    most = min(int(engine.ctx.info[name]) for name in limits) // sketch.picture.supersample
+    most = max_side(engine) // sketch.picture.supersample
     if max(size) > most:
         raise DataError(
             f"a picture of more than 8 bits is drawn whole, here with at most {most} pixels a side; "

@@ -35,6 +35,18 @@ MAX_UNTILED_PIXELS = 2**23
 """Pixels of a picture that is drawn whole: its samples and their depths take 12 bytes each."""
 
 
+def max_side(engine: Engine) -> int:
+    """Return how many pixels a side may have of a picture that is drawn whole."""
+    limits = ("GL_MAX_TEXTURE_SIZE", "GL_MAX_RENDERBUFFER_SIZE")
+    return min(int(engine.ctx.info[name]) for name in limits)
+
+
+def check_large(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> None:
+    """Raise ``SketchError`` where a picture that is drawn in parts has a pass that cannot be."""
+    whole = drawn_size(sketch, size, MAX_PICTURE_SIDE)
+    engine.plan_for_window(sketch, tiles_of(whole, uncut(TILE, sketch.picture.supersample))[0][0])
+
+
 def is_large(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> bool:
     """Return whether a picture is drawn in parts.
 
@@ -42,8 +54,7 @@ def is_large(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> bool:
     passes allow it.
     """
     size = drawn_size(sketch, size, MAX_PICTURE_SIDE)
-    limits = ("GL_MAX_TEXTURE_SIZE", "GL_MAX_RENDERBUFFER_SIZE")
-    if max(size) > min(int(engine.ctx.info[name]) for name in limits):
+    if max(size) > max_side(engine):
         return True
     if size[0] * size[1] <= MAX_UNTILED_PIXELS:
         return False

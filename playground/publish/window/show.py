@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from playground.data.grid import fitted
+from playground.engine.engine import Engine
 from playground.engine.plan import Plan, view_height, view_input
 from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.publish.capture_job import (
@@ -37,7 +38,7 @@ from playground.publish.capture_job import (
 )
 from playground.publish.deep_picture import check_deep
 from playground.publish.export_formats import DEFAULT_GRID, MESHES, ExportOptions
-from playground.publish.large import count_parts, is_large
+from playground.publish.large import check_large, count_parts, is_large, max_side
 from playground.publish.series import SWEEP_SIZE
 from playground.publish.video import QUALITY, check_video, missing_encoder
 from playground.sketch.edit_passes import without_muted
@@ -169,6 +170,7 @@ class Show:
     result: str = ""  # a sentence on it
     failed: str = ""  # why the last one was not made
     costs: PassCosts = field(default_factory=PassCosts)  # of full pictures
+    _of: Path | None = None  # the sketch that they are of
     _record: object = None  # of the picture whose costs were taken last
     _prospect: tuple[object, float, Prospect] = (None, -math.inf, Prospect())
 
@@ -289,7 +291,7 @@ class Show:
             options=self._options(),
         )
         if checks:
-            _check(job, settings.form)
+            _check(session.engine, job, settings.form)
         return job
 
     def _seen(self, sketch: Sketch, size: tuple[int, int]) -> Seen | None:
@@ -413,6 +415,8 @@ class Show:
         view = session.view
         if job.kind == MESH:
             return
+        if job.steps and not view.interpolated and job.kind != PAGE:
+            yield tr("What stopped repeats have not reached is filled in, which it is not in the window.")
         if view.map is not None:
             yield tr("It shows the map of {name}, as the window does.", name=view.map.ref)
         elif view.look is not None:
@@ -424,6 +428,9 @@ class Show:
         """Take what the passes of the last picture took, where they were timed and it was drawn in full."""
         session = self.session
         record, sketch = session.engine.record, session.sketch
+        if session.path != self._of:
+            self._of = session.path  # passes of another sketch may have the same paths
+            self.costs.clear()
         if record is self._record or record.plan is None or sketch is None:
             return
         self._record = record
@@ -562,7 +569,7 @@ _ENCODING = {
 """[s] a pixel that a format takes, about: on two slow cores."""
 
 
-def _drawn(engine: Any, job: CaptureJob, number: int) -> tuple[Sketch, dict[str, Any]]:
+def _drawn(engine: Engine, job: CaptureJob, number: int) -> tuple[Sketch, dict[str, Any]]:
     """Return the sketch of one picture of a job, and its size, time and steps as they are drawn."""
     if job.kind == PICTURE:
         sketch, at = job.sketch, {"size": job.size, "time": job.time, "steps": job.steps}
@@ -573,7 +580,7 @@ def _drawn(engine: Any, job: CaptureJob, number: int) -> tuple[Sketch, dict[str,
     return sketch, at | {"size": (at["size"][0] * times, at["size"][1] * times)}  # type: ignore[index]
 
 
-def _check(job: CaptureJob, form: str) -> None:
+def _check(engine: Engine, job: CaptureJob, form: str) -> None:
     """Raise ``PlaygroundError`` for what no job could write."""
     if job.kind == SHEET and not job.sweeps:
         raise ParameterError(tr("choose a parameter to sweep, or write one, as light.gain=0.5..3"))
@@ -583,6 +590,19 @@ def _check(job: CaptureJob, form: str) -> None:
         job.series()
     if job.kind in MOVING and form != "frames":
         check_video(job.folder / f"film{job.ending}", job.size, job.fps, job.quality)
+        most = max_side(engine) // job.sketch.picture.supersample
+        if max(job.size) > most:
+            wide, high = job.size
+            raise DataError(
+                tr(
+                    "a film of {wide} × {high} pixels: a texture here has {most} a side at most",
+                    wide=wide,
+                    high=high,
+                    most=most,
+                )
+            )
+    elif job.kind == PICTURE and not job.is_deep and is_large(engine, job.sketch, job.size):
+        check_large(engine, job.sketch, job.size)
 
 
 def _form(job: CaptureJob) -> str:

@@ -208,6 +208,20 @@ def test_a_large_picture_says_that_it_is_drawn_in_parts(land: Show) -> None:
     assert land.prospect.error == "70000 × 10 pixels: 1 to 65536 a side"
 
 
+def test_a_view_that_cannot_be_parted_is_refused_before(opened: Callable[..., Show], tmp_path: Path) -> None:
+    (tmp_path / "blur.glsl").write_text(
+        """// blur.glsl -- reads its neighbours
+#pragma kernel(output = "frame:rgba8", repeat = "2")
+vec4 kernel(ivec2 texel) { return 0.5 + 0.5 * previous(clamp(texel + 1, ivec2(0), size - 1)); }
+"""
+    )
+    (tmp_path / "sketch.toml").write_text('format = 1\n[view]\nuse = "./blur"\n')
+    blur = opened(tmp_path, SIZE)
+    most = int(blur.session.engine.ctx.info["GL_MAX_TEXTURE_SIZE"])
+    assert choose(blur, PICTURE, size="4K").prospect.error == ""
+    assert "parts" in choose(blur, PICTURE, size="typed", typed=(most + 2, 16)).prospect.error
+
+
 # ── films and turntables ──────────────────────────────────────────────────────
 
 
