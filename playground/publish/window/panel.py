@@ -38,6 +38,7 @@ _WIDE = 470.0  # [units of scale 1]
 _COLUMNS = 3  # of kinds
 _DIALOG = QUIET | imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_resize
 _DIALOG &= ~imgui.WindowFlags_.no_nav_inputs
+_FOCUSED = imgui.FocusedFlags_.child_windows | imgui.FocusedFlags_.no_popup_hierarchy
 
 
 def draw_show(show: Show, look: Theme) -> None:
@@ -72,7 +73,7 @@ def _takes_keys(show: Show) -> bool:
 
     Tab and arrows go from choice to choice, Space presses; Enter is the dialog's wherever the focus is.
     """
-    if not imgui.is_window_focused(imgui.FocusedFlags_.child_windows):
+    if not imgui.is_window_focused(_FOCUSED):  # a list that is open in it has Enter for itself
         if show.has_keys and not imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
             _give_keys_back(show)
         return False

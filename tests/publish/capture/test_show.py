@@ -610,6 +610,12 @@ def test_the_dialog_works_by_keys_alone(desk: tuple[Bare, Showing], tmp_path: Pa
     bare.key(imgui.Key.left_arrow)
     bare.key(imgui.Key.space)
     assert show.settings.kind == PICTURE
+    bare.key(imgui.Key.down_arrow)
+    bare.key(imgui.Key.down_arrow)
+    for key in (imgui.Key.space, imgui.Key.down_arrow, imgui.Key.enter):
+        bare.key(key)
+        bare.run_frames(2)
+    assert show.settings.form == "png16" and show.working is None, "Enter is the list's that is open"
     bare.key(imgui.Key.enter)
     assert show.working is not None, show.failed
     bare.key(imgui.Key.escape)
