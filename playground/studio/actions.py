@@ -105,7 +105,8 @@ class Actions:
             if locked
             else ""
         )
-        self.notices.say(f"{name}: {counted(len(values) - locked, 'parameter')}{left}")
+        changed = counted(len(values) - locked, "parameter")
+        self.notices.say(tr("{name}: {value}", name=name, value=changed) + left)
 
     def apply_preset(self, name: str) -> None:
         """Set a preset's values, as one step."""

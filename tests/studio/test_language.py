@@ -13,7 +13,14 @@ from imgui_bundle import imgui
 
 from playground import rooms
 from playground.engine.gl_calls import QUERY, WALL
+from playground.paths import GLSL
+from playground.shader.kernel import kernels_of
+from playground.shader.parameter import label_of
 from playground.shader.widgets import WIDGETS
+from playground.sketch.find import shipped_sketches
+from playground.sketch.keyframes import EASES
+from playground.sketch.load import load
+from playground.sketch.techniques import read_technique, shipped_techniques
 from playground.studio import language
 from playground.studio.addition import Addition
 from playground.studio.compare.compare import Mode
@@ -211,3 +218,34 @@ def test_a_parameter_is_found_by_its_label_in_both(bare: Bare) -> None:
         assert found, search
     assert {i.path for s in filtered(draft, Filter("gauche")).values() for i in s.items} == {"height.left"}
     assert not filtered(draft, Filter("droite"))
+
+
+def shipped_words() -> dict[str, set[str]]:
+    """Return what is shipped in words, by what they are: labels of parameters, titles of techniques, …"""
+    sketches = [load(name) for name in shipped_sketches()]
+    techniques = [read_technique(use, GLSL, GLSL) for use in shipped_techniques()]
+    used = [spec.technique for sketch in sketches for spec in sketch.graph.passes]
+    parameters = {
+        p for each in (*techniques, *used) for _, kernel in kernels_of(each) for p in kernel.parameters
+    }
+    return {
+        "parameters": {p.title for p in parameters},
+        "groups": {p.group for p in parameters},
+        "choices": {choice for p in parameters for choice in p.widget.choices},
+        "parts": {part for p in parameters for part in p.parts},
+        "eases": set(EASES),
+        "passes": {label_of(spec.name) for sketch in sketches for spec in sketch.graph.passes},
+        "sketches": {sketch.title for sketch in sketches},
+        "techniques": {technique.title for technique in techniques},
+        "brush": {"Radius", "Strength", "Softness"},
+    }
+
+
+def test_all_that_is_shipped_has_a_french_label() -> None:
+    shipped = {kind: found - {""} for kind, found in shipped_words().items()}
+    french = tomllib.loads((FILE.parent / "french_labels.toml").read_text("utf-8"))
+    lacking = {kind: sorted(found - french.keys()) for kind, found in shipped.items()}
+    shares = {kind: f"{len(found) - len(lacking[kind])} of {len(found)}" for kind, found in shipped.items()}
+    assert not any(lacking.values()), (shares, lacking)
+    assert sorted(french.keys() - set().union(*shipped.values())) == [], "of nothing that is shipped"
+    assert not [label for label, text in french.items() if "'" in text or not text.strip()]

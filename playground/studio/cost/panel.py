@@ -17,7 +17,7 @@ from playground.sketch.variants import any_variants
 from playground.studio import theme
 from playground.studio.cost.costs import Record
 from playground.studio.cost.readout import Readout
-from playground.studio.draw import OVERLAY, Area, explain, fitting, header, styled, table, window
+from playground.studio.draw import OVERLAY, Area, explain, fitting, header, styled, table, window, wrapped
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.interface import Interface
 from playground.studio.language import tr
@@ -127,9 +127,14 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
             if compiled.sandbox
             else ""
         )
-        imgui.text_disabled(
-            tr("files to picture {value} ms{sandbox}", value=f"{compiled.seconds * 1e3:.0f}", sandbox=sandbox)
-        )
+        with wrapped():
+            imgui.text_disabled(
+                tr(
+                    "files to picture {value} ms{sandbox}",
+                    value=f"{compiled.seconds * 1e3:.0f}",
+                    sandbox=sandbox,
+                )
+            )
     _compiling(engine.runner.compile_times)
 
 
@@ -161,14 +166,15 @@ def _plots(record: Record, look: Theme) -> None:
             max=f"{max(spent):.2f}",
         )
         imgui.text_unformatted(fitting(text, imgui.get_content_region_avail().x))
-    imgui.text_disabled(
-        tr(
-            "in all {value} ms; median of {held}: {median} ms",
-            value=f"{record.whole[-1]:.1f}",
-            held=held,
-            median=f"{np.median(record.whole):.1f}",
+    with wrapped():
+        imgui.text_disabled(
+            tr(
+                "in all {value} ms; median of {held}: {median} ms",
+                value=f"{record.whole[-1]:.1f}",
+                held=held,
+                median=f"{np.median(record.whole):.1f}",
+            )
         )
-    )
     for name, numbers in (
         (tr("texels computed"), record.texels),
         (tr("triangles drawn"), record.triangles),

@@ -165,7 +165,7 @@ class ErrorsList:
         problems, text = self.problems, self.problems.headline()
         if problems.errors:
             stays = tr("the last good picture stays") if self.session.shown else tr("there is no picture yet")
-            text = f"! {text}; {stays}"
+            text = "! " + tr("{errors}; {picture}", errors=text, picture=stays)
         style = imgui.get_style()
         wide = sum(imgui.calc_text_size(b).x + 2 * style.frame_padding.x for b in (tr("Copy"), tr("Fold")))
         right = imgui.get_window_width() - style.window_padding.x - wide - style.item_spacing.x
