@@ -343,6 +343,15 @@ def test_edits_in_a_row_do_not_wait_for_the_picture(passes_bare: Bare) -> None:
     assert names_of(passes_bare) == ["height", "height_3", "colour", "view"]
 
 
+def test_the_same_edit_twice_is_two_steps(passes_bare: Bare) -> None:
+    bare, edits = passes_bare, passes_bare.bench.passes
+    assert edits.duplicate("colour") and edits.duplicate("colour")
+    settle(bare)
+    bare.bench.undo.undo()
+    settle(bare)
+    assert names_of(bare) == ["height", "colour", "colour_2", "view"]
+
+
 def test_a_wire_is_dragged_and_one_that_closes_a_circle_refused(
     passes_bare: Bare, monkeypatch: pytest.MonkeyPatch
 ) -> None:

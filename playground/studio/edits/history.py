@@ -178,10 +178,13 @@ class History:
         self._add({("time", ""): before}, {("time", ""): after}, held=held, now=now)
 
     def record(self, before: State, after: State, name: str, *, now: float) -> None:
-        """Take in a step that is more than what is edited; ``settle`` takes in the state after it."""
+        """Take in a step that is more than what is edited; ``settle`` takes in the state after it.
+
+        It is a step of its own, however soon after another.
+        """
         self._close()
         self._name = name
-        self._add(before, after, held=False, now=now)
+        self._add(before, after, held=False, now=now, joins=False)
 
     def go(self, by: int, apply: Callable[[State], bool]) -> bool:
         """Undo (-1) or redo (1) a step: ``apply`` sets what it changed, None for what the file says.
@@ -225,11 +228,12 @@ class History:
             del self.steps[-1]
             self.done -= 1
 
-    def _add(self, before: State, after: State, *, held: bool, now: float) -> None:
+    def _add(self, before: State, after: State, *, held: bool, now: float, joins: bool = True) -> None:
         name, self._name = self._name, ""
         last = self.steps[self.done - 1] if self.done else None
         again = (
-            last is not None
+            joins
+            and last is not None
             and self.done == len(self.steps)
             and last.name == name
             and (self._open or (before.keys() == last.before.keys() and now - last.at < MOMENT))

@@ -94,9 +94,9 @@ class Undo:
             after[key] = contents_of(path)
 
         self.record()
-        if draft is None or not self.file.write(write):
+        if not self.file.write(write):
             return False
-        if edits is not None and edits != draft.edits:
+        if edits is not None and draft is not None and edits != draft.edits:
             old, new = changes_between(draft.edits, edits)
             before, after = before | old, after | new
             self.session.drafts.restore_with_save(edits)
