@@ -146,18 +146,98 @@ class _Renaming:
     is_open: bool = False
 
 
+class _Steps:
+    """The steps of undo of one editor: words, pauses and other changes, each with its time.
+
+    A place among them is the editor's undo index.
+    """
+
+    def __init__(self, editor: text_edit.TextEditor, clock: Callable[[], float]) -> None:
+        self.editor, self.clock = editor, clock  # [s]
+        self.at = editor.get_undo_index()  # in the last frame
+        self._ends: list[int] = []  # between two steps, in order
+        self._made: dict[int, float] = {}  # [s] when the text at a place was made
+        self._own: set[int] = set()  # places of texts that the window wrote itself
+
+    def time(self, by: int) -> float | None:
+        """Return when what is undone (-1) or redone (1) next was made; see ``Typed``."""
+        if not (self.editor.can_redo() if by > 0 else self.editor.can_undo()):
+            return None
+        at = self._goal(1) if by > 0 else self.editor.get_undo_index()
+        return math.inf if by > 0 and at in self._own else self._made.get(at, 0.0)
+
+    def go(self, by: int) -> None:
+        """Undo (-1) or redo (1) a step."""
+        self._go_to(self._goal(by))
+
+    def goes_to(self, text: str) -> bool:
+        """Go a step that the window made itself back or on, where that leads to a text; return whether so."""
+        before = self.editor.get_undo_index()
+        for goal, written in ((self._goal(-1), before), (self._goal(1), self._goal(1))):
+            if written in self._own:
+                self._go_to(goal)
+                if self.editor.get_text() == text:
+                    return True
+                self._go_to(before)
+        return False
+
+    def _go_to(self, goal: int) -> None:
+        while self.editor.can_undo() and self.editor.get_undo_index() > goal:
+            self.editor.undo()
+        while self.editor.can_redo() and self.editor.get_undo_index() < goal:
+            self.editor.redo()
+        self.at = self.editor.get_undo_index()
+
+    def _goal(self, by: int) -> int:
+        """Return the last end of a word, pause or other change, or with 1 the next."""
+        at = self.editor.get_undo_index()
+        if by < 0:
+            number = bisect_left(self._ends, at)
+            return self._ends[number - 1] if number else 0
+        number = bisect_right(self._ends, at)
+        return self._ends[number] if number < len(self._ends) else max(self._made, default=at)
+
+    def take_typed(self, now: int, *, paused: bool) -> None:
+        """Take in what was typed until a place; ``paused``: after a pause."""
+        begins = [at for at in range(self.at, now) if self._begins_word(now - at - 1)]
+        if paused and self.at not in begins:
+            begins.insert(0, self.at)
+        self._forget_after(self.at)
+        self._ends = [*(end for end in self._ends if end < min(begins, default=now)), *begins]
+        self._made |= dict.fromkeys(range(self.at + 1, now + 1), self.clock())
+        self.at = now
+
+    def take_change(self, before: int, *, is_own: bool) -> None:
+        """Take in what changed since a place as one step; ``is_own``: the window wrote it itself."""
+        self.at = self.editor.get_undo_index()
+        self._forget_after(before)
+        self._ends = [*(end for end in self._ends if end < before), before, self.at]
+        self._made[self.at] = self._made.get(before, 0.0) if is_own else self.clock()
+        self._own |= {self.at} if is_own else set()
+
+    def _forget_after(self, at: int) -> None:
+        """Forget what could be redone after a place: something else was done."""
+        self._made = {place: time for place, time in self._made.items() if place <= at}
+        self._own = {place for place in self._own if place <= at}
+
+    def _begins_word(self, since: int) -> bool:
+        """Return whether the letter typed before the last ``since`` begins a line or a word.
+
+        So does the blank before a word.
+        """
+        at = self.editor.get_main_cursor_position()
+        before = self.editor.get_line_text(at.line)[: max(at.index - since, 0)]
+        return not before.strip() or re.search(r"\S\s$|[^\w\s]\w$", before) is not None
+
+
 @dataclass(eq=False)
 class _View:
     """The editor of one open file."""
 
     editor: text_edit.TextEditor
     step: str  # one step of indentation
-    clock: Callable[[], float]  # [s]
+    steps: _Steps
     saved_at: int = 0  # the editor's undo index when its text was that of the file
-    index: int = 0  # its undo index in the last frame
-    steps: list[int] = field(default_factory=list)  # undo indices between words and pauses, in order
-    made: dict[int, float] = field(default_factory=dict)  # [s] when the text of an undo index was made
-    own: set[int] = field(default_factory=set)  # undo indices of texts that the window wrote itself
     typed_at: float = 0.0  # [s]
     waits: bool = False  # what is typed is not drawn yet
     marked: tuple[object, tuple[Diagnostic, ...]] = (None, ())
@@ -178,7 +258,7 @@ class _View:
         return self.editor.get_text()
 
     def replace(self, text: str, *, is_own: bool = False) -> None:
-        if is_own and any(self._goes_to(text, by) for by in (-1, 1)):
+        if is_own and self.steps.goes_to(text):
             return
         is_fixed = self.editor.is_read_only_enabled()
         self.editor.set_read_only_enabled(False)
@@ -191,19 +271,6 @@ class _View:
         self.editor.set_read_only_enabled(is_fixed)
         self.note_step(before, is_own=is_own)
 
-    def _goes_to(self, text: str, by: int) -> bool:
-        """Go a step back (-1) or on (1) that the window made itself, where that leads to a text."""
-        before = self.editor.get_undo_index()
-        if (before if by < 0 else self._goal(by)) not in self.own:
-            return False
-        self._go(by)
-        if self.editor.get_text() == text:
-            return True
-        while self.editor.get_undo_index() != before:
-            self.editor.undo() if by > 0 else self.editor.redo()
-        self.index = before
-        return False
-
     def apply(self, edits: Sequence[tuple[int, int, str]]) -> tuple[int, int]:
         """Replace parts of the text as one step; return its undo index before and after."""
         text, at = self.written(), self.editor.get_main_cursor_position()
@@ -214,91 +281,53 @@ class _View:
         self.editor.set_cursor(_Pos(at.line, min(at.index, length)))
         self.note_step(before)
         self.marked = (None, self.marked[1])  # what is replaced has lost its markers
-        self.waits, self.typed_at = True, self.clock()
-        return before, self.index
+        self.waits, self.typed_at = True, self.steps.clock()
+        return before, self.steps.at
 
     def note_saved(self) -> None:
         self.saved_at = self.editor.get_undo_index()
         self.waits = False
+
+    def time(self, by: int) -> float | None:
+        return self.steps.time(by)
 
     def go(self, by: int) -> None:
         """Undo (-1) what was typed since the last end of a word, pause or other change; or redo it (1).
 
         What changed other files with this one is undone in those, too, where nothing was typed since.
         """
-        now = self.editor.get_undo_index()
-        step = next((step for step in self.shared if step[self][by < 0] == now), {self: (now, now)})
-        for view, ends in step.items():
-            if view.editor.get_undo_index() == ends[by < 0]:
-                view._go(by)
-                view.waits, view.typed_at = True, view.clock()
+        now, end = self.editor.get_undo_index(), 1 if by < 0 else 0
+        step = next((step for step in self.shared if step[self][end] == now), {self: (now, now)})
+        for view, places in step.items():
+            if view.editor.get_undo_index() == places[end]:
+                view.steps.go(by)
+                view.waits, view.typed_at = True, view.steps.clock()
                 view.completion.close()
-
-    def _go(self, by: int) -> None:
-        goal = self._goal(by)
-        while by < 0 and self.editor.can_undo() and self.editor.get_undo_index() > goal:
-            self.editor.undo()
-        while by > 0 and self.editor.can_redo() and self.editor.get_undo_index() < goal:
-            self.editor.redo()
-        self.index = self.editor.get_undo_index()
-
-    def _goal(self, by: int) -> int:
-        """Return the undo index of the last end of a word, pause or other change, or with 1 of the next."""
-        index = self.editor.get_undo_index()
-        if by < 0:
-            at = bisect_left(self.steps, index)
-            return self.steps[at - 1] if at else 0
-        at = bisect_right(self.steps, index)
-        return self.steps[at] if at < len(self.steps) else max(self.made, default=index)
 
     def offset(self, place: text_edit.TextEditor.DocPos) -> int:
         """Return where a place is in the text."""
         lines = self.written().split("\n")[: place.line]
         return sum(len(line) + 1 for line in lines) + place.index
 
-    def time(self, by: int) -> float | None:
-        if not (self.editor.can_redo() if by > 0 else self.editor.can_undo()):
-            return None
-        at = self._goal(1) if by > 0 else self.editor.get_undo_index()
-        return math.inf if by > 0 and at in self.own else self.made.get(at, 0.0)
-
     def follow(self) -> bool:
         """Take in what was typed in the last frame; return whether there was anything."""
-        index, now = self.editor.get_undo_index(), self.clock()
-        if index == self.index:
+        at, now = self.editor.get_undo_index(), self.steps.clock()
+        if at == self.steps.at:
             return False
-        if index > self.index:
-            begins = [at for at in range(self.index, index) if self._begins_word(index - at - 1)]
-            if now - self.typed_at > _PAUSE and self.index not in begins:
-                begins.insert(0, self.index)
-            self.steps = [*(step for step in self.steps if step < min(begins, default=index)), *begins]
-            self._forget_after(self.index)
-            self.made |= dict.fromkeys(range(self.index + 1, index + 1), now)
-        self.index, self.typed_at = index, now
+        if at > self.steps.at:
+            self._forget_shared(self.steps.at)
+            self.steps.take_typed(at, paused=now - self.typed_at > _PAUSE)
+        self.steps.at, self.typed_at = at, now  # the editor's own undo leads back
         return True
 
     def note_step(self, before: int, *, is_own: bool = False) -> None:
         """Make what changed since an undo index a step of undo of its own."""
-        self.index = self.editor.get_undo_index()
-        self.steps = [*(step for step in self.steps if step < before), before, self.index]
-        self._forget_after(before)
-        self.made[self.index] = self.made.get(before, 0.0) if is_own else self.clock()
-        self.own |= {self.index} if is_own else set()
+        self._forget_shared(before)
+        self.steps.take_change(before, is_own=is_own)
 
-    def _forget_after(self, index: int) -> None:
-        """Forget what could be done again after an undo index: something else was done."""
-        self.made = {at: time for at, time in self.made.items() if at <= index}
-        self.own = {at for at in self.own if at <= index}
+    def _forget_shared(self, index: int) -> None:
+        """Forget the steps of several files that were undone: what is typed takes their place."""
         self.shared = [step for step in self.shared if step[self][1] <= index]
-
-    def _begins_word(self, since: int) -> bool:
-        """Return whether the letter typed before the last ``since`` begins a line or a word.
-
-        So does the blank before a word.
-        """
-        at = self.editor.get_main_cursor_position()
-        before = self.editor.get_line_text(at.line)[: max(at.index - since, 0)]
-        return not before.strip() or re.search(r"\S\s$|[^\w\s]\w$", before) is not None
 
 
 def _place_of(text: str, offset: int) -> text_edit.TextEditor.DocPos:
@@ -320,8 +349,8 @@ def _view_of(editing: Editing, files: OpenFiles) -> _View:
         editor.set_find_replace_enabled(False)  # its box is cut off in a narrow pane, and text shines through
         editor.set_text(editing.text.base)
         editor.set_insert_spaces_on_tabs(step != "\t")
-        index, clock = editor.get_undo_index(), files.notices.now
-        view = editing.view = _View(editor, step, clock, index, index)
+        steps = _Steps(editor, files.notices.now)
+        view = editing.view = _View(editor, step, steps, saved_at=steps.at)
         if editing.typed_before is not None:
             view.replace(editing.typed_before)
         if editing.is_older:
@@ -364,7 +393,7 @@ def draw_code(files: OpenFiles, problems: Problems, look: Theme, tracing: Tracin
     waiting = [e for e in files.editing if isinstance(e.view, _View) and e.view.waits]
     for editing in waiting:
         view = _view_of(editing, files)
-        if files.notices.now() - view.typed_at >= PATIENCE or editing is not seen:
+        if files.notices.now() - view.typed_at >= PATIENCE:
             view.waits = False
             files.draw_typed(editing)
     left = [
@@ -385,7 +414,7 @@ def _take_or_leave_keys(files: OpenFiles) -> None:
     if asked or is_clicked:
         files.pane.asked_at = now
     if is_clicked and not files.pane.has_keys and files.current is not None:
-        _view_of(files.current, files).editor.set_focus()  # a right click alone does not
+        _view_of(files.current).editor.set_focus()  # a right click alone does not
     is_new = now - files.pane.asked_at <= _JUST
     if not imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
         files.pane.has_keys = files.pane.has_keys and is_new
@@ -605,8 +634,8 @@ def _draw_bar(editing: Editing, view: _View, files: OpenFiles, look: Theme) -> N
     note = tr("Ctrl+S; what is typed is drawn at once, and kept here until it is saved")
     buttons(
         (f"{tr('Save')}###save code", note, lambda: files.save(editing), view.changed),
-        (f"{tr('Undo')}###undo code", "Ctrl+Z", lambda: files.step(-1), view.editor.can_undo()),
-        (f"{tr('Redo')}###redo code", "Ctrl+Y", lambda: files.step(1), view.editor.can_redo()),
+        (f"{tr('Undo')}###undo code", "Ctrl+Z", partial(files.step, -1), view.editor.can_undo()),
+        (f"{tr('Redo')}###redo code", "Ctrl+Y", partial(files.step, 1), view.editor.can_redo()),
         (f"{tr('Find')}###find code", "Ctrl+F", partial(_open_find, view, files), True),
         small=True,
     )
@@ -773,7 +802,7 @@ def _replace(view: _View, find: Find, *, all_of_them: bool = False) -> None:
         editor.replace_text_in_current_cursor(find.new)
     if editor.get_undo_index() != before:
         view.note_step(before)
-        view.waits, view.typed_at = True, view.clock()
+        view.waits, view.typed_at = True, view.steps.clock()
         view.marked = (None, view.marked[1])
     if not all_of_them:
         _find_next(view, find)
@@ -857,7 +886,7 @@ def _accept(view: _View, suggestion: Suggestion) -> None:
         lines = int(row <= at.line)
     editor.set_cursor(_Pos(at.line + lines, start.index + len(label)))
     view.note_step(before)
-    view.waits, view.typed_at = True, view.clock()
+    view.waits, view.typed_at = True, view.steps.clock()
     shown.close()
 
 
