@@ -263,7 +263,7 @@ class Live:
         self._settling = _SETTLES
         self._last = time.perf_counter()
         self._reloads = session.last_reload
-        self.mouse = PictureMouse(session, self.bench.painting)
+        self.mouse = PictureMouse(session, self.bench.painting, self.bench.walk)
         self.keys = PictureKeys(self.bench)
         session.engine.runner.inputs.is_live = True
         self.finite = FiniteWatch()
@@ -366,7 +366,7 @@ class Live:
     def _patience(self) -> float:
         """Return how long nothing needs to be done [s]."""
         moves = self.session.animated and self.session.clock.playing
-        if self.session.is_listening or moves or self.session.view.turning:
+        if self.session.is_listening or moves or self.session.view.turning or self.bench.walk.moves:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
         if self._settling > 0 or self.remotes.waits or self.window.keys.waits:
             return 0.0
@@ -405,6 +405,7 @@ class Live:
         if self.session.animated:
             self.session.advance(min(now - self._last, _MAX_STEP), datetime.now())
         self.session.turn(min(now - self._last, _MAX_STEP))
+        self.bench.walk.advance(min(now - self._last, _MAX_STEP))
         self._last = now
 
     def _draw_frame(self) -> None:
@@ -506,7 +507,7 @@ class Live:
             self.mouse.act(area, self.window.density)
             if not self.bench.painting.on:
                 act_on_picture(self.bench.tracing, self.session.picture.texture, area, self.window.density)
-        self.bench.undo.record(held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
+        self.bench.record(held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
 
     def _picture(self, size: tuple[int, int]) -> moderngl.Texture | None:
         session = self.session

@@ -21,6 +21,7 @@ from playground.studio.graph.edits import PassEdits
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.interface import Interface, Panes, Preferences, Tab, WindowControls
 from playground.studio.keyframes.keyframe_edits import KeyframeEdits
+from playground.studio.land.walk import Walk
 from playground.studio.notices import Notices
 from playground.studio.paint.painting import Painting
 from playground.studio.problems.problems import Problems
@@ -59,6 +60,7 @@ class Workbench:
         self.inspection = Inspection(session)
         self.tracing = Tracing(session, trace_sandbox)
         self.painting = Painting(session, folder, wake=wake)
+        self.walk = Walk(session, self._before_walk)
         self.file = SketchFile(session, self.notices)
         self.undo = Undo(session, self.notices, self.painting, self.file)
         self.actions = Actions(session, self.notices, self.undo, self.file, folder)
@@ -84,6 +86,16 @@ class Workbench:
         self.additions: list[Addition] = []  # of the rooms that can be removed
         self.versions = Versions(self.actions, self.inspection.compare, is_left_out=self._shows_rooms_own)
         self.controllers = Controllers(session, self.notices)
+
+    def _before_walk(self) -> None:
+        """Put down what the mouse or the keys would be for besides; the steps so far are recorded."""
+        if self.painting.on:
+            self.painting.toggle()
+        self.undo.record()
+
+    def record(self, *, held: bool) -> None:
+        """Record what a frame has changed; ``held``: a mouse button is down. A walk is one step."""
+        self.undo.record(held=held or self.walk.on)
 
     def _shows_rooms_own(self) -> bool:
         """Return whether the sketch that is shown is a room's, and not the user's."""

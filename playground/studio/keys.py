@@ -87,6 +87,8 @@ def _open(bench: Workbench) -> Iterator[Layer]:
         yield "inspector", inspection.inspector.toggle
     if bench.painting.on:
         yield "brush", bench.painting.toggle
+    if bench.walk.on:
+        yield "walk", bench.walk.end
     if inspection.compare.on:
         yield "A/B", inspection.compare.toggle
     if bench.versions.is_looking:
@@ -137,6 +139,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K._0, "0", "time to 0", lambda b: b.undo.seek(0.0)),
     Key(_K.r, "R", "reset the view", lambda b: b.session.drafts.set_camera(None), brief="view"),
     Key(_K.m, "M", "map from above", lambda b: b.session.toggle_map(), brief="map"),
+    Key(_K.w, "W", "walk on the land: W A S D, arrows, drag, wheel", lambda b: b.walk.toggle()),
     Key(_K.i, "I", _INSPECT, lambda b: b.inspection.inspector.toggle()),
     Key(_K.t, "T", _TRACE, lambda b: b.tracing.toggle()),
     Key(_K.a, "A", "keep this as A and compare; or no longer", lambda b: b.inspection.compare.toggle()),
@@ -197,6 +200,18 @@ def _toggle_readout(bench: Workbench) -> None:
     preferences.choose(shows_readout=not preferences.shows_readout)
 
 
+_WALK: dict[imgui.Key, tuple[float, float]] = {
+    _K.w: (0.0, 1.0),
+    _K.up_arrow: (0.0, 1.0),
+    _K.s: (0.0, -1.0),
+    _K.down_arrow: (0.0, -1.0),
+    _K.a: (-1.0, 0.0),
+    _K.left_arrow: (-1.0, 0.0),
+    _K.d: (1.0, 0.0),
+    _K.right_arrow: (1.0, 0.0),
+}
+"""What a key does while one walks: to the right, and forward."""
+
 _ONCE = (_K.s, _K.v)
 """With Ctrl, keys that do not repeat while they are held."""
 
@@ -251,6 +266,7 @@ def act_on_keys(bench: Workbench) -> None:
     """
     io = imgui.get_io()
     ctrl, shift = ctrl_held(), _shift_held()
+    bench.walk.head(0.0, 0.0)
     if ctrl and imgui.is_key_pressed(imgui.Key.q, repeat=False):
         bench.window.quit()
         return
@@ -276,6 +292,9 @@ def act_on_keys(bench: Workbench) -> None:
         if imgui.is_key_pressed(_K.o, repeat=False) and not ctrl:
             bench.start.close()
         return
+    if bench.walk.on and not ctrl:
+        down = [way for key, way in _WALK.items() if imgui.is_key_down(key)]
+        bench.walk.head(sum(way[0] for way in down), sum(way[1] for way in down), fast=shift)
     typed = letters()
     sign = pressed_sign(bench.window.sign_held) if ctrl else ""
     for key in all_keys():
@@ -286,7 +305,8 @@ def act_on_keys(bench: Workbench) -> None:
         else:
             fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
             pressed = fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key not in _ONCE)
-        if pressed and (bench.painting.on or not key.brush):
+        walks = bench.walk.on and not ctrl and key.key in _WALK
+        if pressed and not walks and (bench.painting.on or not key.brush):
             key.act(bench)
             bench.interface.preferences.use_key(key.name)
 
@@ -400,7 +420,7 @@ class PictureKeys:
     def act(self) -> bool:
         """Give the picture its keys of this frame; return whether none of them is for the window."""
         session, io = self.bench.session, imgui.get_io()
-        if session.sketch is None or not traits_of(session.sketch).keys:
+        if session.sketch is None or not traits_of(session.sketch).keys or self.bench.walk.on:
             self.has_keyboard = False
             session.hold_keys(())
             return False

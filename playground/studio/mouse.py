@@ -1,4 +1,4 @@
-"""What the mouse does over the picture: it orbits the terrain, moves the sun or a divider, or paints."""
+"""What the mouse does over the picture: it orbits the terrain, looks around, moves the sun, or paints."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.studio import theme
 from playground.studio.draw import Area
+from playground.studio.land.walk import Walk
 from playground.studio.paint.painting import Painting
 from playground.studio.picture.gestures import Gesture, divider_at, divider_position, steered_through
 from playground.studio.session import Session
@@ -21,6 +22,7 @@ class PictureMouse:
 
     session: Session
     painting: Painting
+    walk: Walk
     divider: str = ""  # the line that is held
     on_divider: bool = False  # the mouse is on a line
     strokes: bool = False  # it paints
@@ -38,6 +40,11 @@ class PictureMouse:
         if io.key_ctrl:
             if left and (io.mouse_delta.x or io.mouse_delta.y):
                 session.move_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
+            return
+        if self.walk.on:
+            if left or right:
+                self.walk.look(io.mouse_delta.x / area[3], io.mouse_delta.y / area[3])
+            self.walk.hurry(io.mouse_wheel)
             return
         if self._divide(io.mouse_pos.x - area[0], area[2]) or (not io.key_shift and self._paint(area)):
             left = False

@@ -15,8 +15,8 @@ from playground.studio.draw import Area, plate, plate_size
 from playground.studio.drops import Drops, is_terrain
 from playground.studio.inspect.inspector import Inspector
 from playground.studio.inspect.panel import draw_values
-from playground.studio.keyframes.panel import draw_timeline
-from playground.studio.land.panel import draw_exaggeration
+from playground.studio.keyframes.panel import draw_timeline, height_of_timeline
+from playground.studio.land.panel import draw_land
 from playground.studio.language import tr, tr_label
 from playground.studio.notices import Notices
 from playground.studio.session import Session
@@ -131,7 +131,8 @@ def draw_inspection(
     if picture is not None:
         inspection.compare.follow(picture)
     inspection.graph.end()
-    draw_exaggeration(bench.session, look, area)
+    below = height_of_timeline(bench.session, bench.interface, look)
+    draw_land(bench.session, bench.walk, look, (*area[:3], area[3] - below))
     draw_ab(inspection.compare, bench.undo, look, area)
     draw_timeline(bench.undo, bench.interface, look, area)
     if picture is not None:

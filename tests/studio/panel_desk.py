@@ -123,7 +123,7 @@ class Bare:
             else:
                 around(self.draw)
             act_on_keys(self.bench)
-            self.bench.undo.record(held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
+            self.bench.record(held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
             self.bench.take_notes()
             imgui.render()
             for texture in imgui.get_platform_io().textures:

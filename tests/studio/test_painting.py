@@ -46,7 +46,7 @@ def act(bare: Bare, tmp_path: Path) -> Iterator[Act]:
     """Give a function that draws a frame of the picture's mouse at (700, 360)."""
     painting, io = bare.bench.painting, imgui.get_io()
     painting.folder, painting.now = tmp_path, lambda: bare.time
-    hand = PictureMouse(bare.session, painting)
+    hand = PictureMouse(bare.session, painting, bare.bench.walk)
 
     def frame(*, down: bool = False, wheel: float = 0.0, keys: tuple[imgui.Key, ...] = ()) -> None:
         bare.time += 0.05

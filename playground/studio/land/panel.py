@@ -20,6 +20,7 @@ from playground.studio.draw import (
     cross,
     fitting_choice,
     header,
+    next_in_row,
     plate,
     pushed_id,
     row,
@@ -42,6 +43,7 @@ from playground.studio.land.land import (
     sun_items,
 )
 from playground.studio.land.looks import LOOKS, look_of, look_title
+from playground.studio.land.walk import Walk
 from playground.studio.language import tr
 from playground.studio.panel.parameter_list import Item
 from playground.studio.session import Session
@@ -73,6 +75,7 @@ class TerrainGroup:
         rows: ParameterRows,
         look: Theme,
         preferences: Preferences,
+        walk: Walk,
     ) -> None:
         """Draw it; ``rows`` draws the parameters of passes that belong to it."""
         imgui.spacing()
@@ -95,7 +98,7 @@ class TerrainGroup:
                 self._sun(sketch, session, rows, look)
                 imgui.tree_pop()
             if imgui.tree_node_ex(f"{tr('Camera')}###camera"):
-                self._camera(session)
+                self._camera(session, walk)
                 imgui.tree_pop()
 
     def _parameters(self, items: Iterable[Item], sketch: Sketch, rows: ParameterRows) -> None:
@@ -230,7 +233,7 @@ class TerrainGroup:
 
     # ── where it is seen from ────────────────────────────────────────────────
 
-    def _camera(self, session: Session) -> None:
+    def _camera(self, session: Session, walk: Walk) -> None:
         sketch = session.sketch
         if sketch is None or not session.orbits:
             imgui.text_disabled(tr("this picture has no camera"))
@@ -244,9 +247,17 @@ class TerrainGroup:
             session.drafts.set_camera(north_up(sketch.camera))
         turns = session.view.turning
         label = tr("Stop") if turns else tr("Turntable")
-        imgui.same_line()
+        next_in_row(label)
         if button(f"{label}###turntable", tr("Goes slowly round the land")):
+            walk.end()
             session.turn_table(not turns)
+        label = tr("Stop walking") if walk.on else tr("Walk")
+        next_in_row(label)
+        note = tr(
+            "On the ground, from the picture's middle: W A S D or arrows, drag to look, wheel for speed"
+        )
+        if button(f"{label}###walk", f"{note} (W)"):
+            walk.toggle()
         with row(tr("Views"), tr("A click goes there; with Shift, or the right button, it keeps this view")):
             with _narrow_buttons():
                 self._views(session)
@@ -292,15 +303,19 @@ def size_text(size: tuple[int, int]) -> str:
     return f"{size[0]} × {size[1]}"
 
 
-def draw_exaggeration(session: Session, look: Theme, area: Area) -> None:
-    """Write in the picture's lower left corner how many times too high the land is shown, if it is."""
-    factor, plan = session.exaggeration, session.plan
-    if factor == 1.0 or plan is None:
+def draw_land(session: Session, walk: Walk, look: Theme, area: Area) -> None:
+    """Write in the picture's lower left corner how many times too high the land is shown, and of a walk."""
+    factor, texts = session.exaggeration, []
+    if factor != 1.0:
+        texts.append(tr("heights ×{factor}", factor=f"{factor:g}"))
+    if walk.on:
+        texts.append(tr("walking, {speed} m/s; Esc ends", speed=f"{walk.speed:.3g}"))
+    if not texts or session.plan is None:
         return
     margin = 14 * look.scale
     plate(
         imgui.get_background_draw_list(),
-        tr("heights ×{factor}", factor=f"{factor:g}"),
+        "\n".join(texts),
         (area[0] + margin, area[1] + area[3] - margin),
         ink=theme.packed(theme.palette.ink),
         ground=theme.packed(theme.palette.ground, 0.85),

@@ -238,7 +238,7 @@ class Sections:
         if main:
             drawing.main(main)
         if not memory.filter:
-            self._terrain.draw(sketch, session, rows, look, bench.interface.preferences)
+            self._terrain.draw(sketch, session, rows, look, bench.interface.preferences, bench.walk)
         feeders = {channel.feeder for channel in channels(draft.base) if channel.alone}
         for spec in sketch.graph.passes:
             section = sections.get(spec.name)
