@@ -121,6 +121,23 @@ def test_a_look_is_chosen_and_natural_is_the_sketchs_own(bare: Bare) -> None:
         assert (look.name if look else None) == name and bare.session.error is None
 
 
+def test_contour_lines_are_a_round_number_of_the_unit_apart(bare: Bare) -> None:
+    bare.click("##land.look")
+    bare.click("Contours")
+    bare.run_frames(2)
+    assert interval_of(bare) == 5.0, "20 lines on 100 m"
+    bare.click("ft###unit ft")
+    bare.run_frames(2)
+    assert interval_of(bare) == pytest.approx(20 * 0.3048), "16 lines on 328 ft"
+    typed(bare, "##land.interval", "50")
+    assert interval_of(bare) == pytest.approx(50 * 0.3048) and bare.session.error is None
+
+
+def interval_of(bare: Bare) -> float | None:
+    look = bare.session.view.look
+    return look.interval if look is not None else None
+
+
 def test_views_are_kept_and_gone_back_to(bare: Bare) -> None:
     bare.click("Camera###camera")
     bare.click("From above###above")

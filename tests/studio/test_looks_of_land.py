@@ -84,10 +84,10 @@ def test_a_look_has_a_sun_of_its_own_that_moves_its_light_alone(
     assert session.sketch is sketch
 
 
-@pytest.mark.parametrize(("relief", "interval"), [(840.0, 20.0), (100.0, 2.0), (9000.0, 200.0), (51.0, 2.0)])
+@pytest.mark.parametrize(("relief", "interval"), [(840.0, 50.0), (100.0, 5.0), (9000.0, 500.0), (26.0, 2.0)])
 def test_contour_intervals_are_round(relief: float, interval: float) -> None:
     assert interval_for(relief) == pytest.approx(interval)
-    assert 20 <= relief / interval_for(relief) <= 50
+    assert 10 <= relief / interval_for(relief) <= 25
 
 
 def test_each_look_has_a_title() -> None:

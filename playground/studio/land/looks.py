@@ -21,6 +21,7 @@ LOOKS = ("natural", "hypsometric", "hillshade", "clay", "slope", "contours")
 """In the order in which they are offered; natural is the sketch's own view."""
 
 _SUN = "sunlight.sun"  # of a look that has a light
+_INTERVAL = "lines.interval"  # of one that has contour lines
 _FOLDER = Path(__file__).parent / "looks"
 
 
@@ -72,7 +73,20 @@ class Look:
 
     def with_sun(self, value: Value) -> Look:
         """Return the look with another direction of light."""
-        return replace(self, values=(*(v for v in self.values if v[0] != _SUN), (_SUN, value)))
+        return self._with(_SUN, value)
+
+    @property
+    def interval(self) -> float | None:
+        """The metres from one of its contour lines to the next; None where it has none."""
+        value = dict(self.values).get(_INTERVAL)
+        return float(value) if isinstance(value, int | float) else None
+
+    def with_interval(self, metres: float) -> Look:
+        """Return the look with its contour lines so far apart, within what the lines can be."""
+        return self._with(_INTERVAL, min(max(metres, 0.1), 2000.0))
+
+    def _with(self, path: str, value: Value) -> Look:
+        return replace(self, values=(*(v for v in self.values if v[0] != path), (path, value)))
 
     def fits(self, sketch: Sketch) -> bool:
         """Return whether the sketch has the heights."""
@@ -87,24 +101,29 @@ class Appearance:
     look: Look | None = None
 
 
-def look_of(name: str, plan: Plan | None) -> Look | None:
-    """Return a look at what a plan shows; None for natural, and where the plan has no heights."""
+def look_of(name: str, plan: Plan | None, unit: float = 1.0) -> Look | None:
+    """Return a look at what a plan shows; None for natural, and where the plan has no heights.
+
+    Contour lines are a round number of a ``unit`` [m] apart.
+    """
     height = view_height(plan) if plan is not None else ""
     if plan is None or name == "natural" or not height:
         return None
-    lines = (("lines.interval", interval_for(plan.terrain.relief or 1.0)),) if name == "contours" else ()
-    return Look(name, height, lines)
+    look = Look(name, height)
+    if name != "contours":
+        return look
+    return look.with_interval(interval_for((plan.terrain.relief or 1.0) / unit) * unit)
 
 
 def interval_for(relief: float) -> float:
-    """Return the metres from one contour line to the next that suit a relief [m]: 1, 2 or 5 with noughts.
+    """Return how far apart contour lines suit a relief, in the same unit: 1, 2 or 5 with noughts.
 
-    There are 20 to 50 lines.
+    There are 10 to 25 lines.
     """
-    least = max(relief, 1e-3) / 50
+    least = max(relief, 1e-3) / 25
     power = 10.0 ** math.floor(math.log10(least))
     number = next(n for n in (1, 2, 5, 10) if n * power >= least * (1 - 1e-9))
-    return min(max(number * power, 0.1), 2000.0)
+    return number * power
 
 
 _last: dict[tuple[int, Look], tuple[Graph, Graph]] = {}  # the sketch's graph, and that in a look

@@ -90,8 +90,8 @@ class TerrainGroup:
             return
         with pushed_id("terrain"):
             self._exaggeration(session)
-            self._look(session)
             self.land.unit = "ft" if preferences.is_in_feet else "m"
+            self._look(session)
             self._metres(session, preferences)
             self._parameters(sea_items(draft), sketch, rows)
             if imgui.tree_node_ex(f"{tr('Sun')}###sun"):
@@ -152,11 +152,17 @@ class TerrainGroup:
         note = tr("Other colours and light for the same land; the sketch stays as it is")
         with row(tr("Look"), note, edited=now != LOOKS[0]):
             name = choose(f"{TYPE_ROW}look", fitting_choice(look_title(now)), LOOKS, now, name=look_title)
+        shown = session.view.look
+        if shown is not None and shown.interval is not None:
+            with row(tr("Interval"), tr("From one contour line to the next; every fifth is thick")):
+                interval = self._drag(f"{TYPE_ROW}interval", shown.interval, 0.1)
+            if interval is not None:
+                session.view.show_as(shown.with_interval(interval))
         if name is None:
             return
         if session.view.map is not None:
             session.show(None)
-        chosen = look_of(name, session.plan)
+        chosen = look_of(name, session.plan, METRES_IN[self.land.unit])
         session.view.show_as(chosen)
         if chosen is None and name != LOOKS[0]:
             session.notes.append(tr("this sketch has no heights that a look could show"))
@@ -182,6 +188,9 @@ class TerrainGroup:
             for name in METRES_IN:
                 if imgui.radio_button(f"{name}###unit {name}", unit == name):
                     preferences.choose(is_in_feet=name == "ft")
+                    look = session.view.look
+                    if look is not None and look.interval is not None:  # a round number of that unit
+                        session.view.show_as(look_of(look.name, session.plan, METRES_IN[name]) or look)
                 imgui.same_line()
             imgui.new_line()
 
