@@ -11,11 +11,11 @@ from imgui_bundle import imgui
 from playground.paths import SKETCHES
 from playground.sketch.model import Camera
 from playground.studio.edits.edits import Draft
-from playground.studio.land.land import Land, aspect_sizes, from_above, north_up, sun_items
+from playground.studio.land.land import Land, aspect_sizes, from_above, level_items, north_up, sun_items
 from playground.studio.land.looks import look_of
 from playground.studio.session import TURN, Session
 
-from ..sketch_texts import SMALL_VIEW, passes
+from ..sketch_texts import SMALL_VIEW, map_of, passes
 from .panel_desk import Bare, OpenBare
 from .session_desk import OpenSession
 
@@ -23,6 +23,10 @@ FILES = {
     "hills.glsl": """#pragma kernel(output = "height:r32f")
 float kernel(ivec2 texel) { return float(texel.x) / float(size.x - 1); }
 """,
+    "stripes.glsl": """#pragma kernel(output = "colour:rgba8")
+vec4 kernel(ivec2 texel) { return vec4(float(texel.x % 2)); }
+""",
+    "flat.toml": "format = 1\nsize = 33\n" + passes(stripes="./stripes") + map_of("stripes"),
     "sketch.toml": "format = 1\nsize = [33, 17]\nextent = [640.0, 320.0]\nrelief = 100.0\n"
     + passes(height="./hills", light="lighting/l_dot_n")
     + SMALL_VIEW,
@@ -92,6 +96,24 @@ def test_extent_size_and_base_elevation(bare: Bare) -> None:
     bare.key(imgui.Key.enter)
     assert sketch_of(bare).sketch.terrain.size == (65, 33)
     assert any("size" in notice.text for notice in bare.bench.notices.items)
+
+
+def test_the_sea_is_where_headers_say_and_in_the_unit(bare: Bare) -> None:
+    assert [item.path for item in level_items(sketch_of(bare))] == ["view.sea_level"]
+    bare.click("ft###unit ft")
+    typed(bare, "##land.view.sea_level", "100")
+    assert dict(sketch_of(bare).edits.values) == {"view.sea_level": 30.48}
+    bare.click("##land.view.sea_level-reset")
+    assert not sketch_of(bare).edits.values
+
+
+def test_where_there_is_no_land_the_group_says_so(open_bare: OpenBare, folder: Path) -> None:
+    bare = open_bare(folder / "flat.toml")
+    bare.watch(imgui, "text_disabled")
+    bare.bench.interface.preferences.choose(panes={})
+    bare.run_frames(3)
+    assert "##land.size" in bare.places and "##land.relief" not in bare.places
+    assert any("no heights" in label for label in bare.places)
 
 
 def test_metres_are_saved_into_the_sketch(bare: Bare) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from playground.shader.kernel import TerrainKernel
 from playground.sketch.model import Camera, Sketch
 from playground.studio.edits.edits import Draft
 from playground.studio.panel.parameter_list import Item, items_of
@@ -16,7 +17,7 @@ METRES_IN = {"m": 1.0, "ft": 0.3048}
 VIEWS = tuple(range(1, 6))
 """The numbers under which views are kept."""
 _DAYLIGHT = ("hour", "day", "year", "latitude", "longitude")
-_SEA = ("sea", "sea_level")
+_SEA = "sea"  # whether one is drawn
 SIZES = (65, 129, 257, 513, 1025, 2049)
 
 
@@ -92,9 +93,15 @@ def sun_items(draft: Draft) -> list[Item]:
 
 
 def sea_items(draft: Draft) -> list[Item]:
-    """Return what sets the sea, where the sketch has one: whether it is drawn, and its level."""
-    items = [item for item in items_of(draft).values() if item.exported and _named(item, _SEA)]
-    return sorted(items, key=lambda item: _SEA.index(item.path.rpartition(".")[2]))
+    """Return what says whether a sea is drawn, where the sketch can have one."""
+    return [item for item in items_of(draft).values() if _named(item, (_SEA,))]
+
+
+def level_items(draft: Draft) -> list[Item]:
+    """Return what sets elevations [m], as the sea's: headers say which parameters those are."""
+    kernels = draft.sketch.graph.kernels
+    leaves = {f"{path}.{kernel.level}" for path, kernel in kernels if isinstance(kernel, TerrainKernel)}
+    return [item for item in items_of(draft).values() if item.exported and item.leaf in leaves]
 
 
 def _named(item: Item, names: tuple[str, ...]) -> bool:

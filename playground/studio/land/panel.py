@@ -11,6 +11,8 @@ from typing import Protocol
 from imgui_bundle import ImVec2, imgui
 
 from playground.engine.exaggeration import LARGEST
+from playground.engine.plan import view_height
+from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
 from playground.studio import theme
 from playground.studio.draw import (
@@ -27,7 +29,9 @@ from playground.studio.draw import (
     slot,
     slots_width,
     styled,
+    wrapped,
 )
+from playground.studio.edits.edits import Draft
 from playground.studio.interface import Preferences
 from playground.studio.land.land import (
     METRES_IN,
@@ -37,6 +41,7 @@ from playground.studio.land.land import (
     from_above,
     keep_exaggeration,
     keep_view,
+    level_items,
     north_up,
     recall_view,
     sea_items,
@@ -89,11 +94,17 @@ class TerrainGroup:
         if not opened or plan is None or draft is None:
             return
         with pushed_id("terrain"):
-            self._exaggeration(session)
             self.land.unit = "ft" if preferences.is_in_feet else "m"
-            self._look(session)
-            self._metres(session, preferences)
-            self._parameters(sea_items(draft), sketch, rows)
+            if view_height(plan):
+                self._exaggeration(session)
+                self._look(session)
+                self._metres(session, preferences)
+                self._sea(sketch, session, draft, rows)
+            else:
+                with wrapped():
+                    imgui.text_disabled(tr("This sketch makes no heights, so there is no land to measure."))
+                if plan.terrain.size is not None:
+                    self._size(session, plan.terrain.size)
             if imgui.tree_node_ex(f"{tr('Sun')}###sun"):
                 self._sun(sketch, session, rows, look)
                 imgui.tree_pop()
@@ -178,9 +189,7 @@ class TerrainGroup:
             if extent is not None:
                 self._extent(session, extent)
         if terrain.size is not None:
-            note = tr("Texels from west to east, and from south to north; Enter takes what is typed")
-            with _terrain_row(session, "size", tr("Size"), note):
-                self._size(session, terrain.size)
+            self._size(session, terrain.size)
         note = tr("Of height 0, above the sea")
         with _terrain_row(session, "base_elevation", tr("Base elevation"), note):
             self._length(session, "base_elevation", base or 0.0, low=-1e6)
@@ -223,7 +232,28 @@ class TerrainGroup:
         if tuple(values) != extent:
             session.drafts.set("extent", tuple(values))
 
+    def _sea(self, sketch: Sketch, session: Session, draft: Draft, rows: ParameterRows) -> None:
+        self._parameters(sea_items(draft), sketch, rows)
+        levels, values = level_items(draft), values_of(draft.sketch)
+        for item in levels:
+            value = values[item.leaf]
+            with _terrain_row(session, item.path, item.title, item.parameter.tooltip):
+                if isinstance(value, int | float):
+                    self._length(session, item.path, float(value), low=item.parameter.widget.low or -1e6)
+        if not levels:
+            with row(tr("Sea level"), tr("The elevation that the sea lies at")):
+                imgui.align_text_to_frame_padding()
+                imgui.text_disabled(tr("no sea here"))
+                imgui.set_item_tooltip(
+                    tr("Its view draws no water: view/terrain has a sea, other views may not")
+                )
+
     def _size(self, session: Session, size: tuple[int, int]) -> None:
+        note = tr("Texels from west to east, and from south to north; Enter takes what is typed")
+        with _terrain_row(session, "size", tr("Size"), note):
+            self._draw_size(session, size)
+
+    def _draw_size(self, session: Session, size: tuple[int, int]) -> None:
         text = size_text(size)
         wide, side = imgui.calc_item_width(), imgui.get_frame_height()
         imgui.set_next_item_width(wide - side)
