@@ -117,6 +117,7 @@ _EDIT = "edit the file of the current error here, or in your own editor"
 _HELP = "show or hide these keys"
 _VISITS = "the sketch that was open before, and forward again"
 _BRUSH = "the brush: narrower, wider, weaker, stronger, harder, softer"
+_VERSIONS = "look at the version before, after; F7: while it is held"
 _SIZE_KEYS = "text and panels larger, smaller, at their first size"
 
 
@@ -165,7 +166,8 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.f1, "F1", _HELP, lambda b: b.interface.toggle_keymap()),
     Key(_K.f4, "F4", "frames a second in the corner, or no longer", lambda b: _toggle_readout(b)),
     Key(_K.f10, "F10", "language, colours, size of text, panes", lambda b: b.interface.ask_settings()),
-    Key(_K.f6, "F6, Shift+F6", "look at the version before, after", lambda b: _look(b)),
+    Key(_K.f6, "F6, Shift+F6", _VERSIONS, lambda b: _look(b)),
+    Key(_K.f7, "F7", _VERSIONS, lambda b: b.versions.hold()),
     Key(_K.f6, "Ctrl+F6", "go back to the version that is looked at", lambda b: _go_back(b), ctrl=True),
     Key(_K.v, "V", "the versions, or no longer", lambda b: b.panes.toggle_strip("versions")),
     Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
@@ -267,6 +269,10 @@ def act_on_keys(bench: Workbench) -> None:
     io = imgui.get_io()
     ctrl, shift = ctrl_held(), _shift_held()
     bench.walk.head(0.0, 0.0)
+    if imgui.is_key_down(_K.f7):
+        bench.versions.hold()
+    elif imgui.is_key_released(_K.f7):
+        bench.versions.let_go()
     if ctrl and imgui.is_key_pressed(imgui.Key.q, repeat=False):
         bench.window.quit()
         return

@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 from playground.errors import DataError
+from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
 from playground.studio.bench import Workbench
 from playground.studio.edits.edits import Edits
 from playground.studio.interface import WindowControls
 from playground.studio.versions import store as store_module
 from playground.studio.versions.store import State, VersionStore
-from playground.studio.versions.versions import Versions
+from playground.studio.versions.versions import HELD, Versions
 
 from .session_desk import BAD, GOOD, KERNEL, LEVEL, Harness, OpenSession
 
@@ -348,6 +349,66 @@ def test_a_version_is_compared_as_a(harness: Harness, versions: Versions) -> Non
     compare.follow(harness.session.frame((32, 24)))
     assert compare.draws == 1
     compare.release()
+
+
+def test_a_version_is_compared_with_as_long_as_it_is_held(harness: Harness, versions: Versions) -> None:
+    save(harness, "level = 0.25", "level = 0.5")
+    compare, now = harness.bench.inspection.compare, [0.0]
+    harness.bench.notices.now = lambda: now[0]
+    versions.hold()
+    now[0] = HELD / 2
+    versions.hold()
+    assert not versions.let_go() and not compare.on, "a click"
+    versions.hold()
+    now[0] += HELD
+    versions.hold()
+    ask(harness, versions)
+    assert compare.on and compare.split == 1.0 and compare.stored is not None
+    assert dict(values_of(compare.stored.draft.sketch))["height.level"] == 0.25
+    assert versions.let_go() and not compare.on and compare.split == 0.5 and not versions.is_looking
+
+
+def test_what_was_compared_before_a_hold_is_again_after_it(harness: Harness, versions: Versions) -> None:
+    save(harness, "level = 0.25", "level = 0.5")
+    compare, now = harness.bench.inspection.compare, [0.0]
+    harness.bench.notices.now = lambda: now[0]
+    compare.keep()
+    compare.split, before = 0.25, compare.stored
+    versions.hold(versions.items[0])
+    now[0] += HELD
+    versions.hold(versions.items[0])
+    assert versions.let_go(), "before the sandbox has drawn it"
+    versions.update(idle=True)
+    assert compare.stored is before and compare.split == 0.25
+    versions.hold(versions.items[0])
+    now[0] += HELD
+    versions.hold(versions.items[0])
+    ask(harness, versions)
+    assert compare.stored is not before
+    versions.let_go()
+    assert compare.stored is before and compare.split == 0.25
+    compare.release()
+
+
+def test_texts_values_and_camera_of_a_version_come_back(harness: Harness, versions: Versions) -> None:
+    drafts, kernel = harness.session.drafts, harness.folder / "one" / "hills.glsl"
+    text, camera = kernel.read_bytes(), Camera(12.345678901, 33.3, 777.25, (1.5, 2.0, 0.1 + 0.2), 41.0)
+    drafts.set("height.level", 0.1 + 0.2)
+    drafts.set_camera(camera)
+    harness.session.stop_at("height", 2)
+    harness.frame()
+    assert versions.keep("first")
+    first = next(version for version in versions.items if version.name == "first")
+    drafts.set("height.level", 0.75)
+    drafts.set_camera(None)
+    save(harness, "0.5 *", "0.25 *")
+    assert versions.go_back(first)
+    harness.answer(GOOD)
+    harness.frame()
+    shown = harness.session.shown
+    assert shown is not None and kernel.read_bytes() == text
+    assert shown.edits.camera == camera and dict(shown.edits.values) == {"height.level": 0.1 + 0.2}
+    assert harness.session.view.steps == {"height": 2}
 
 
 def test_a_name_is_kept_and_can_be_taken_away(harness: Harness, versions: Versions) -> None:

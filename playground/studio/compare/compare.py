@@ -19,10 +19,12 @@ from typing import TYPE_CHECKING
 from playground.engine.plan import Plan
 from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
+from playground.sketch.map_sketch import Map
 from playground.sketch.model import Sketch
 from playground.sketch.traits import is_animated, traits_of
 from playground.studio.edits.edits import Draft, StoredEdits, first_draft
 from playground.studio.edits.memory import Compared
+from playground.studio.land.looks import Look
 from playground.studio.language import tr
 from playground.studio.picture.full_screen import Blend, Painter, Picture
 from playground.studio.picture.preview import as_preview
@@ -227,9 +229,9 @@ class Compare:
         self._picture = self._painter = self.blend = self._drawn = None
 
     def _picture_key(self, stored: Stored, plan: Plan, size: tuple[int, int]) -> object:
-        shown = self.session.view.map
+        shown = self._shown()
         time = plan.time if is_animated(stored.draft.sketch) else 0.0
-        view_inputs = size, plan.sketch.camera, plan.interpolated
+        view_inputs = size, plan.sketch.camera, plan.interpolated, plan.exaggeration
         return stored.draft, view_inputs, time, shown, self._faster(stored.draft.sketch), self.session.engine
 
     def _faster(self, sketch: Sketch) -> frozenset[str]:
@@ -265,9 +267,14 @@ class Compare:
 
     def _seen_as(self, sketch: Sketch, plan: Plan) -> Sketch:
         """Return a sketch as B is shown: by its camera, and the same texture if one is shown."""
-        shown = self.session.view.map
+        shown = self._shown()
         seen = sketch.with_camera(plan.sketch.camera)
         return shown.of(seen) if shown is not None else seen
+
+    def _shown(self) -> Map | Look | None:
+        """Return what is shown in place of the sketch's own view."""
+        view = self.session.view
+        return view.map if view.map is not None else view.look
 
 
 @contextmanager

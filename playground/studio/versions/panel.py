@@ -38,6 +38,7 @@ class VersionsPanel:
         self._typed = ""
         self._typed_for = ""  # the version that the name is of
         self._is_double = False  # the mouse was pressed the second time
+        self._gets_keys = False  # the field for a name, in the next frame
         self._count = -1  # of the versions that were drawn last
 
     @property
@@ -98,6 +99,9 @@ class VersionsPanel:
         if self._typed_for != versions.selected:
             self._typed_for, self._typed = versions.selected, chosen.name if chosen is not None else ""
         imgui.set_next_item_width(_NAME_LETTERS * imgui.get_font_size())
+        if self._gets_keys:
+            imgui.set_keyboard_focus_here()
+            self._gets_keys = False
         enter = imgui.InputTextFlags_.enter_returns_true
         entered, self._typed = imgui.input_text_with_hint("##name", tr("name"), self._typed, enter)
         imgui.same_line()
@@ -109,7 +113,7 @@ class VersionsPanel:
                 if versions.keep(self._typed):
                     self._typed = ""
             imgui.same_line()
-            imgui.text_disabled(fitting(tr("click: look   double click: go back"), _left()))
+            imgui.text_disabled(fitting(tr("click: look   hold: compare   double click: go back"), _left()))
             return
         named = bool(self._typed.strip())
         note = tr("One with a name is kept for ever; without, until there are too many")
@@ -145,8 +149,12 @@ class VersionsPanel:
         versions = self.versions
         corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
         clicked = imgui.invisible_button(f"version {version.key}", size, imgui.ButtonFlags_.enable_nav)
-        hovered = imgui.is_item_hovered()
-        lit = hovered or imgui.is_item_focused()
+        hovered, focused = imgui.is_item_hovered(), imgui.is_item_focused()
+        lit = hovered or focused
+        if imgui.is_item_active() and imgui.is_mouse_down(0):
+            versions.hold(version)
+        elif imgui.is_item_deactivated():
+            clicked = not versions.let_go() and clicked
         if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
             explain(title_of(version), _note(version))
         far, radius = ImVec2(corner.x + size.x, corner.y + size.y), 5 * look.scale
@@ -168,6 +176,11 @@ class VersionsPanel:
         if version.key == versions.selected or lit:
             wide = (2.5 if version.key == versions.selected else 1.0) * look.scale
             draw.add_rect(corner, far, theme.packed(theme.palette.accent), radius, wide)
+        if focused:  # the keys are its own
+            inner = 3 * look.scale
+            low_corner = ImVec2(corner.x + inner, corner.y + inner)
+            high_corner = ImVec2(far.x - inner, far.y - inner)
+            draw.add_rect(low_corner, high_corner, theme.packed(theme.palette.ink), radius, 1.5 * look.scale)
         now = f"{tr('now')} · " if version.key == versions.current else ""
         left, middle = corner.x + 5 * look.scale, low + _CAPTION * look.scale / 2
         if version.name:
@@ -186,12 +199,18 @@ class VersionsPanel:
                 versions.look(version)
         self._draw_menu(version)
 
+    def _name(self, version: Version) -> None:
+        """Give the field for a name the keys, for a version."""
+        self.versions.select(version)
+        self._gets_keys = True
+
     def _draw_menu(self, version: Version) -> None:
         with pushed_id(version.key):
             if not imgui.begin_popup_context_item("menu"):
                 return
             for label, act in (
                 ("Look at it", self.versions.look),
+                ("Name", self._name),
                 ("Compare A/B", self.versions.compare),
                 ("Go back", self.versions.go_back),
                 ("As a new sketch", self.versions.as_new_sketch),

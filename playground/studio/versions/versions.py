@@ -25,7 +25,7 @@ from playground.sketch.model import Sketch
 from playground.sketch.save import save_copy
 from playground.sketch.techniques import Techniques
 from playground.studio.actions import Actions
-from playground.studio.compare.compare import Compare
+from playground.studio.compare.compare import Compare, Mode, Stored
 from playground.studio.edits.edits import Draft, file_values, first_draft, reload_draft
 from playground.studio.edits.history import TEXT, Key, state_of
 from playground.studio.language import tr
@@ -33,6 +33,8 @@ from playground.studio.reload.stages import ReloadStage
 from playground.studio.save.sketch_file import contents_of
 from playground.studio.versions.store import State, Version, VersionStore, hash_of_text, key_of
 
+HELD = 0.25
+"""[s] after which a version that is held is compared with."""
 _LOOKS = 0.05  # [s] between questions to the sandbox about a version
 
 
@@ -43,6 +45,19 @@ class _Asked:
     version: Version
     draft: Draft
     show: Callable[[Draft], None]
+
+
+@dataclass
+class _Held:
+    """A version that is held, and what was compared before."""
+
+    version: Version
+    since: float  # [s]
+    compared: Stored | None
+    mode: Mode
+    split: float
+    is_asked: bool = False
+    is_shown: bool = False
 
 
 class Versions:
@@ -71,6 +86,7 @@ class Versions:
         self._before: tuple[Draft, dict[str, int]] | None = None  # what looking took the place of
         self._looked_draft: Draft | None = None
         self._is_reported = False
+        self._held: _Held | None = None
 
     # ── state ────────────────────────────────────────────────────────────────
 
@@ -97,7 +113,8 @@ class Versions:
     @property
     def patience(self) -> float:
         """How long nothing needs to be done here [s]."""
-        return _LOOKS if self._asked is not None else math.inf
+        waits = self._asked is not None or (self._held is not None and not self._held.is_asked)
+        return _LOOKS if waits else math.inf
 
     def picture(self, version: Version) -> Path:
         """Return the file of a version's picture; it may be missing."""
@@ -214,6 +231,52 @@ class Versions:
     def compare(self, version: Version) -> None:
         """Compare what is shown with a version: it becomes A."""
         self._ask(version, lambda draft: self._compare.keep_state(draft, dict(version.state.steps)))
+
+    def select(self, version: Version) -> None:
+        """Have buttons and keys be for a version, without showing it."""
+        self.selected = version.key
+
+    def hold(self, version: Version | None = None) -> None:
+        """Show a version in place of what is shown until ``let_go``: call it as long as it is held.
+
+        It is shown once it has been held for a moment, so that a click is none. By default it is the selected
+        one, else the one before the present.
+        """
+        if self._held is None:
+            kept = [item for item in self.items if item.key != self._current]
+            version = version or self.chosen or (kept[-1] if kept else None)
+            if version is not None and self.session.shown is not None:
+                compare = self._compare
+                self._held = _Held(
+                    version, self.actions.notices.now(), compare.stored, compare.mode, compare.split
+                )
+        elif not self._held.is_asked and self.actions.notices.now() - self._held.since >= HELD:
+            self._held.is_asked = True
+            with self._reported():
+                draft = self._draft_of(self._held.version)
+                self._asked = _Asked(self._held.version, draft, self._show_held)
+                self._go_on()
+
+    def let_go(self) -> bool:
+        """End what ``hold`` shows, and compare as before; return whether it was more than a click."""
+        held, self._held = self._held, None
+        if held is None or not held.is_asked:
+            return False
+        if self._asked is not None and self._asked.show == self._show_held:
+            self._asked = None
+        if held.is_shown:
+            if held.compared is not None:
+                self._compare.resume(held.compared)
+            else:
+                self._compare.end()
+            self._compare.mode, self._compare.split = held.mode, held.split
+        return True
+
+    def _show_held(self, draft: Draft) -> None:
+        if self._held is not None:
+            self._held.is_shown = True
+            self._compare.keep_state(draft, dict(self._held.version.state.steps))
+            self._compare.mode, self._compare.split = Mode.DIVIDER, 1.0
 
     def leave(self) -> None:
         """Show again what looking took the place of."""
