@@ -30,7 +30,7 @@ from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, ComputeVariant, CpuSource, Kernel, PlainCompute, Value
-from playground.studio import theme
+from playground.studio import focus, theme
 from playground.studio.addition import Addition, FullScreen
 from playground.studio.bench import Host, Workbench
 from playground.studio.code.editors import Opener
@@ -417,6 +417,7 @@ class Live:
         window.zoom = bench.interface.preferences.size
         look.choose(theme.LIGHT if bench.interface.preferences.is_light else theme.DARK)
         window.begin()
+        focus.begin(bench.interface.focus)
         bench.inspection.begin()
         if bench.start.shown:
             self._draw_start_page()

@@ -25,8 +25,8 @@ Area = tuple[float, float, float, float]
 """x, y from above, width, height, in the window's units."""
 
 _F = imgui.WindowFlags_
-QUIET = _F.no_saved_settings | _F.no_nav_inputs
-"""A window that leaves nothing behind and takes no key."""
+QUIET = _F.no_saved_settings.value
+"""A window that leaves nothing behind."""
 SIDE_PANEL = QUIET | _F.no_title_bar | _F.no_move | _F.no_collapse | _F.no_scrollbar
 SIDE_PANEL |= _F.no_bring_to_front_on_focus
 OVERLAY = QUIET | _F.no_decoration | _F.no_move | _F.always_auto_resize | _F.no_focus_on_appearing
@@ -280,18 +280,18 @@ def slot() -> float:
 
 def cross(label: str, note: str, high: float = 0.0) -> bool:
     """Draw a row's reset where the cursor is, as high as the row; return whether it is clicked on."""
-    clicked, hovered, middle = slot_button(label, note, high)
+    clicked, hovered, middle = slot_button(label, note, high, imgui.ButtonFlags_.enable_nav)
     size, ink = imgui.calc_text_size("×"), theme.palette.ink if hovered else theme.palette.warm
     position = ImVec2(middle.x - size.x / 2, middle.y - size.y / 2)
     imgui.get_window_draw_list().add_text(position, theme.packed(ink), "×")
     return clicked
 
 
-def slot_button(label: str, note: str, high: float = 0.0) -> tuple[bool, bool, ImVec2]:
+def slot_button(label: str, note: str, high: float = 0.0, flags: int = 0) -> tuple[bool, bool, ImVec2]:
     """Make an empty button of one slot; return whether it is clicked on and hovered, and its middle."""
     side, high = slot(), high or imgui.get_frame_height()
     corner = imgui.get_cursor_screen_pos()
-    clicked = imgui.invisible_button(label, ImVec2(side, high))
+    clicked = imgui.invisible_button(label, ImVec2(side, high), flags)
     hovered = imgui.is_item_hovered()
     if hovered:
         imgui.set_tooltip(note)

@@ -172,6 +172,21 @@ class TypedAhead:
 
 
 @dataclass
+class KeyFocus:
+    """Where the keyboard's focus is, and was."""
+
+    tabbed: int = 0  # Tab was pressed in the frame before: 1, with Shift -1
+    item: int = 0  # imgui's number of the control that had the focus then
+    pane: str = ""  # that it is in
+    enters: str = ""  # the pane that gets it in the next frame
+    goal: int = 0  # at which of its controls; 0: the first
+    inits: str = ""  # the pane whose first control is being looked for
+    firsts: dict[str, int] = field(default_factory=dict)  # pane → its first control
+    lasts: dict[str, int] = field(default_factory=dict)  # pane → the control from which Tab left it
+    popups: int = 0  # that were open at the end of the frame before
+
+
+@dataclass
 class Interface:
     """What of one window's interface is shown."""
 
@@ -182,6 +197,7 @@ class Interface:
     reveal: str = ""  # the pass that the panel is to scroll to
     preferences: Preferences = field(default_factory=Preferences)
     ahead: TypedAhead = field(default_factory=TypedAhead)
+    focus: KeyFocus = field(default_factory=KeyFocus)
 
     def show_pass(self, name: str) -> None:
         """Show the panel, scrolled to a pass."""

@@ -16,7 +16,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground import rooms
 from playground.sketch.traits import traits_of
-from playground.studio import theme
+from playground.studio import focus, theme
 from playground.studio.addition import Layer
 from playground.studio.bench import Workbench
 from playground.studio.code.panel import close_smaller, give_back_keys, stay, typing
@@ -77,6 +77,8 @@ def _open(bench: Workbench) -> Iterator[Layer]:
         yield "keys", bench.interface.toggle_keymap
     for addition in bench.additions:
         yield from addition.popups()
+    if focus.is_shown() and not bench.start.shown:
+        yield "focus", focus.hide
     for name in typing(bench.files):
         yield f"editor {name}", partial(give_back_keys, bench.files)
     if bench.tracing.on:
@@ -157,7 +159,7 @@ _KEYS: tuple[Key | None, ...] = (
         for n, tool in enumerate(TOOLS, 1)
     ),
     Key(_K.s, "S", "save a PNG", lambda b: b.actions.save_picture(), brief="save"),
-    Key(_K.tab, "Tab", "hide the panel", lambda b: b.interface.toggle_panel(), brief="hide"),
+    Key(_K.h, "H", "hide the panel", lambda b: b.interface.toggle_panel(), brief="hide"),
     Key(_K.o, "O", "start page: new, open, recent, shipped", lambda b: b.start.toggle(), brief="open"),
     None,  # the place of those of rooms
     Key(_K.none, "/", "search the parameters", lambda b: b.interface.search(), letter="/"),
@@ -268,6 +270,7 @@ def act_on_keys(bench: Workbench) -> None:
     """
     io = imgui.get_io()
     ctrl, shift = ctrl_held(), _shift_held()
+    closed_popup = _move_focus(bench)
     bench.walk.head(0.0, 0.0)
     if imgui.is_key_down(_K.f7):
         bench.versions.hold()
@@ -277,10 +280,10 @@ def act_on_keys(bench: Workbench) -> None:
         bench.window.quit()
         return
     if imgui.is_key_pressed(imgui.Key.escape, repeat=False):
-        if not left_a_field() and not close_smaller(bench.files):
+        if not left_a_field() and not close_smaller(bench.files) and not closed_popup:
             close_one(bench)
         return
-    if imgui.is_key_pressed(_K.f10, repeat=False):
+    if imgui.is_key_pressed(_K.f10, repeat=False) and not shift:
         bench.interface.ask_settings()
         return
     if typing(bench.files) and ctrl and imgui.is_key_pressed(imgui.Key.e, repeat=False):
@@ -298,6 +301,7 @@ def act_on_keys(bench: Workbench) -> None:
         if imgui.is_key_pressed(_K.o, repeat=False) and not ctrl:
             bench.start.close()
         return
+    has_focus = focus.is_shown()
     if bench.walk.on and not ctrl:
         down = [way for key, way in _WALK.items() if imgui.is_key_down(key)]
         bench.walk.head(sum(way[0] for way in down), sum(way[1] for way in down), fast=shift)
@@ -311,10 +315,24 @@ def act_on_keys(bench: Workbench) -> None:
         else:
             fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
             pressed = fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key not in _ONCE)
+        if has_focus and key.key == _K.space:
+            continue  # it presses the control
         walks = bench.walk.on and not ctrl and key.key in _WALK
         if pressed and not walks and (bench.painting.on or not key.brush):
             key.act(bench)
             bench.interface.preferences.use_key(key.name)
+
+
+def _move_focus(bench: Workbench) -> bool:
+    """Move the focus by Tab; return whether imgui itself has just closed a popup."""
+    state = bench.interface.focus
+    barred = bool(typing(bench.files)) or bench.inspection.graph.has_keys
+    focus.update(state, always=bench.start.shown, barred=barred)
+    popups = len(imgui.get_current_context().open_popup_stack)
+    closed, state.popups = popups < state.popups, popups
+    if closed:
+        stay(bench.files)
+    return closed
 
 
 # ── the key map ───────────────────────────────────────────────────────────────

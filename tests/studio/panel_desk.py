@@ -10,6 +10,7 @@ import imgui_bundle
 from imgui_bundle import ImVec2, imgui
 
 from playground.engine.engine import Engine
+from playground.studio import focus
 from playground.studio.bench import Workbench
 from playground.studio.code.panel import draw_code, draw_questions
 from playground.studio.code.unsaved_texts import KeptTexts
@@ -57,6 +58,7 @@ class Bare:
         self.panel = Panel()
         self.panes = PaneLayout(self.bench.panes)
         self.places: dict[str, tuple[float, float, float, float]] = {}  # by label: x, y, width, height
+        self.labels: dict[int, str] = {}  # by imgui's number
         self._watched: list[tuple[object, str, object]] = []
         for owner, name in (
             (imgui, "button"),
@@ -99,6 +101,7 @@ class Bare:
             answer = draw(label, *rest)
             low, size = imgui.get_item_rect_min(), imgui.get_item_rect_size()
             self.places[label] = low.x, low.y, size.x, size.y
+            self.labels[imgui.get_item_id()] = label
             return answer
 
         return watched
@@ -118,6 +121,7 @@ class Bare:
             imgui.get_io().delta_time = step
             self.picture = self.session.frame((48, 32))
             imgui.new_frame()
+            focus.begin(self.bench.interface.focus)
             if around is None:
                 self.draw()
             else:

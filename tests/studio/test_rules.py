@@ -13,7 +13,19 @@ import playground
 ROOT = Path(playground.__file__).resolve().parent
 STUDIO = ROOT / "studio"
 SCREEN = {"imgui_bundle", "glfw"}
-WINDOW = {"app", "draw", "guard", "key_queue", "keys", "mouse", "overlay", "panes", "status", "theme"}
+WINDOW = {
+    "app",
+    "draw",
+    "focus",
+    "guard",
+    "key_queue",
+    "keys",
+    "mouse",
+    "overlay",
+    "panes",
+    "status",
+    "theme",
+}
 WINDOW |= {"settings_panel", "widgets", "window"}
 """Modules at the top of the studio that may draw."""
 

@@ -272,9 +272,9 @@ def keys_show_maps_and_save_pictures(app: App) -> None:
         app.wait(lambda now, name=name: now["saved"].endswith(name))
         app.says(name)
         assert (app.folder.parent / name).stat().st_size > 1000
-    app.do("key", "Tab")
+    app.do("key", "h")
     wide = app.changes(first)
-    app.do("key", "Tab")
+    app.do("key", "h")
     app.shows(first)
     assert wide != first
 

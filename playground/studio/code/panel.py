@@ -24,7 +24,7 @@ from imgui_bundle import imgui_color_text_edit as text_edit
 from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import shown, without_part
 from playground.shader.syntax.tokens import without_comments
-from playground.studio import theme
+from playground.studio import focus, theme
 from playground.studio.code.open_files import Editing, Find, OpenFiles, library_files
 from playground.studio.draw import (
     QUIET,
@@ -416,7 +416,7 @@ def _take_or_leave_keys(files: OpenFiles) -> None:
     if is_clicked and not files.pane.has_keys and files.current is not None:
         _view_of(files.current).editor.set_focus()  # a right click alone does not
     is_new = now - files.pane.asked_at <= _JUST
-    if not imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
+    if not imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows) or focus.is_shown():
         files.pane.has_keys = files.pane.has_keys and is_new
     elif files.pane.has_keys or is_new:
         files.pane.has_keys = True
@@ -509,7 +509,7 @@ def _draw_text(
         view.is_light = theme.palette.is_light
         of = text_edit.TextEditor
         view.editor.set_palette(of.get_light_palette() if view.is_light else of.get_dark_palette())
-    focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows)
+    focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows) and not focus.is_shown()
     view.focused_for = view.focused_for + 1 if focused and not editing.focus else 0
     _mark(editing, view, problems)
     _draw_bar(editing, view, files, look)
@@ -522,6 +522,7 @@ def _draw_text(
         editing.focus = False
         if editing.takes_keys:
             imgui.set_window_focus()
+            focus.hide()
         view.editor.set_cursor(_Pos(editing.line - 1, editing.column - 1))
         view.editor.scroll_to_line(editing.line - 1, text_edit.TextEditor.Scroll.align_middle)
         if editing.takes_keys:
@@ -542,6 +543,10 @@ def _draw_text(
             imgui.get_io().mouse_pos = ImVec2(-9e5, -9e5)  # the editor does not see the mouse on a slider
         view.editor.render(_TEXT, ImVec2(0, -below))
         imgui.get_io().mouse_pos = mouse
+        if focus.is_shown() and imgui.get_item_id() == imgui.get_current_context().nav_id:
+            focus.hide()  # Tab came to the text, which has Tab for itself
+            view.editor.set_focus()
+            files.pane.asked_at = imgui.get_frame_count()
         if imgui.is_item_hovered():
             _explain(editing, view, files, look)
         _draw_behind(view, look)

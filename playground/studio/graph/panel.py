@@ -16,7 +16,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.sketch.edit_passes import Wire
 from playground.sketch.model import Kernel
-from playground.studio import theme
+from playground.studio import focus, theme
 from playground.studio.bench import Workbench
 from playground.studio.draw import button, ctrl_held, disabled, fitting, inked, letters
 from playground.studio.graph.canvas_panel import (
@@ -212,7 +212,9 @@ class GraphPanel:
         """Take what is done to the pane itself: zoom, move, give the keys."""
         graph, io = self.graph, imgui.get_io()
         imgui.set_next_item_allow_overlap()
-        imgui.invisible_button("canvas", canvas.room, _F.mouse_button_left | _F.mouse_button_middle)
+        flags = _F.mouse_button_left | _F.mouse_button_middle | _F.enable_nav
+        if imgui.invisible_button("canvas", canvas.room, flags) and focus.is_shown():
+            graph.gets_keys = True  # by Space or Enter
         self._rests = imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip)
         inside = canvas.holds(io.mouse_pos) and imgui.is_window_hovered(_DRAGS)
         over = node_at(wiring, canvas, io.mouse_pos) if inside else ""

@@ -96,7 +96,8 @@ class Panel:
             draw_search(self.memory, bench.interface.ahead)
         footer = _footer_lines(bench.session.orbits, look)
         bar = imgui.WindowFlags_.always_vertical_scrollbar if sketch is not None else 0
-        imgui.begin_child("sections", ImVec2(0, -_footer_height(footer, look)), 0, bar)
+        size, flat = ImVec2(0, -_footer_height(footer, look)), imgui.ChildFlags_.nav_flattened
+        imgui.begin_child("sections", size, flat, bar)
         if bench.inspection.costs_asked:
             self.memory.filter = Filter()
         if sketch is not None:

@@ -12,10 +12,10 @@ from pathlib import Path
 from imgui_bundle import ImVec2, imgui
 
 from playground.errors import ParameterError
-from playground.shader.parameter import label_of, write
+from playground.shader.parameter import label_of, part_names, write
 from playground.sketch.model import PassSpec, Sketch, TexelKernel, kernels_of
 from playground.sketch.replace_technique import choices
-from playground.studio import theme
+from playground.studio import focus, theme
 from playground.studio.actions import Actions
 from playground.studio.bench import Workbench
 from playground.studio.channels.channels import channels
@@ -85,11 +85,14 @@ class Rows:
         value, changed = self.values.of[path], path in self.values.changed
         end = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
         top = imgui.get_cursor_screen_pos()
+        by_keys = focus.has(item.label, *(f"{item.label}.{name}" for name in part_names(parameter)))
         with row(tr_label(item.title), lambda: explanation(parameter, path), edited=changed):
             if self.memory.entry == item.label:
                 self._entry(item)
             else:
                 new = draw_value(parameter, value, WidgetSlot(item.label, self.look.scale, folder))
+                if by_keys and self._acts_on_keys(item):
+                    new = None
                 clicked = imgui.is_item_hovered() and imgui.is_mouse_clicked(0)
                 if parameter.widget.facts.control == _TYPED and clicked and self._is_typing(item):
                     new = None
@@ -100,7 +103,7 @@ class Rows:
         locked = path in self.values.locked
         mouse = imgui.get_mouse_pos()
         inside = top.y <= mouse.y < imgui.get_cursor_screen_pos().y and imgui.is_window_hovered(_PRESSED)
-        here = inside and mouse.y < top.y + imgui.get_frame_height()
+        here = by_keys or (inside and mouse.y < top.y + imgui.get_frame_height())
         if locked or here:
             imgui.same_line(end - 2 * slot() - 2)
             if _lock(path, locked, self.look):
@@ -143,6 +146,23 @@ class Rows:
         await_field(self.ahead)
         self.memory.entry, self.memory.entry_opens = item.label, True
         self.memory.entry_text = write(item.parameter, self.values.of[item.path])
+
+    def _acts_on_keys(self, item: Item) -> bool:
+        """Act on the keys of the row that shows the focus; return whether one was for the row.
+
+        Enter opens the field in which a number is typed, the menu's key its menu.
+        """
+        is_menu = imgui.is_key_pressed(imgui.Key.menu, repeat=False)
+        if is_menu or (imgui.get_io().key_shift and imgui.is_key_pressed(imgui.Key.f10, repeat=False)):
+            self.memory.menu, self.memory.menu_opens = item.label, True
+            return True
+        entered = any(
+            imgui.is_key_pressed(key, repeat=False) for key in (imgui.Key.enter, imgui.Key.keypad_enter)
+        )
+        if not entered or item.parameter.widget.facts.control != _TYPED or imgui.get_io().want_text_input:
+            return False
+        self.open_entry(item)
+        return True
 
     def _is_typing(self, item: Item) -> bool:
         """Handle a click on a widget; return whether it opens a field to type in.
@@ -380,6 +400,8 @@ class _Drawing:
         heights, used = self.memory.heights, imgui.is_any_item_active()
         top = imgui.get_window_pos().y
         bottom = top + imgui.get_window_height()
+        if focus.is_shown():  # Tab goes on to a row that comes into view by it
+            top, bottom = 2 * top - bottom, 2 * bottom - top
         for item in group.items:
             y = imgui.get_cursor_screen_pos().y
             high = heights.get((item.path, self.look.scale))

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 _CARD = 200.0  # [units of scale 1] that a card is wide at least
 _CAPTION = 26.0
 _PAGE = QUIET | imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move
-_PAGE &= ~imgui.WindowFlags_.no_nav_inputs
 _GROUPS = (("recent", "Recent"), ("shipped", "Shipped sketches"), ("lesson", "Lessons"))
 _SUBJECTS = {
     "landscapes": "landscapes",

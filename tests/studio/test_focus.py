@@ -1,0 +1,194 @@
+"""The keyboard alone: where Tab goes, what Space, Enter and arrows do there, how Esc gives the keys back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from imgui_bundle import imgui
+
+from playground.engine.engine import Engine
+from playground.sketch.assign import values_of
+from playground.studio import focus
+from playground.studio.code.panel import draw_code, draw_questions, typing
+from playground.studio.graph.panel import passes_tab
+from playground.studio.interface import Tab
+from playground.studio.panes import draw_pane
+from playground.studio.theme import Theme
+
+from ..sketch_texts import map_of, passes
+from .panel_desk import Bare
+
+K = imgui.Key
+TERRAIN = """// terrain.glsl -- hills
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5;  //! slider(0, 1) How high
+uniform vec3 tint = vec3(0.5);  //! color
+uniform bool flat_ = false;  //! checkbox
+uniform int kind = 0;  //! menu("round", "sharp")
+float kernel(ivec2 texel) { return flat_ ? 0.5 : level; }
+"""
+FILES = {
+    "terrain.glsl": TERRAIN,
+    "sketch.toml": "format = 1\nsize = 33\n" + passes(height="./terrain") + map_of("height"),
+}
+
+
+class Desk(Bare):
+    """The panel, the code pane and the strip."""
+
+    def draw(self) -> None:
+        files, problems = self.bench.files, self.bench.problems
+        self.bench.follow_files()
+        super().draw()
+        area = (780.0, 0.0, 500.0, 470.0)
+        draw_pane("code pane", area, lambda: draw_code(files, problems, self.theme, self.bench.tracing))
+        draw_questions(files)
+
+    def focused(self) -> str:
+        nav = imgui.get_current_context().nav_id if focus.is_shown() else 0
+        label: str = self.labels.get(nav, "?" if nav else "")
+        return label
+
+    def tab(self, count: int = 1, *, back: bool = False) -> list[str]:
+        """Press Tab so many times; return what has the focus after each."""
+        seen = []
+        for _ in range(count):
+            self.key(*((K.mod_shift,) if back else ()), K.tab)
+            self.run_frames(2)
+            seen.append(self.focused())
+        return seen
+
+    def walk(self, to: str) -> None:
+        """Press Tab until a control has the focus."""
+        for _ in range(80):
+            if self.focused() == to:
+                return
+            self.tab()
+        raise AssertionError(f"Tab never comes to {to}")
+
+    def value(self, name: str) -> object:
+        assert self.session.sketch is not None
+        return values_of(self.session.sketch)[f"height.{name}"]
+
+
+@pytest.fixture
+def desk(any_engine: Engine, folder: Path) -> Iterator[Desk]:
+    made = Desk(any_engine, folder)
+
+    def draw(_: Theme) -> None:
+        imgui.button("in strip")
+
+    made.bench.tabs.append(Tab("one", "One", draw))
+    made.bench.interface.preferences.choose(panes={"strip": 1.0, "terrain": 0.0})
+    made.run_frames(5)
+    yield made
+    made.close()
+
+
+def test_tab_goes_through_the_panel_the_code_and_the_strip(desk: Desk) -> None:
+    assert desk.focused() == "", "nothing shows it at first"
+    seen = desk.tab(12)
+    while not typing(desk.bench.files) and len(seen) < 70:
+        seen += desk.tab()
+    wanted = ["EN  Aa###settings", "History", "Save", "##shown", "##search", "Changed##only"]
+    wanted += ["Terrain###terrain", "Height###pass", "##height.level", "##height.flat_", "View###pass"]
+    wanted += ["Find###find code"]
+    places = [next(n for n, label in enumerate(seen) if wish in label) for wish in wanted]
+    assert places == sorted(places), seen
+    assert seen[-1] == "" and focus.current_pane() == "code pane", "behind its buttons comes the text"
+    desk.type("x")
+    desk.key(K.tab)
+    desk.run_frames(2)
+    assert typing(desk.bench.files), "in the text Tab indents"
+    desk.key(K.mod_ctrl, K.tab)
+    desk.run_frames(2)
+    assert focus.current_pane() == "strip" and focus.is_shown()
+    desk.walk("in strip")
+    assert desk.tab() == ["EN  Aa###settings"], "from the end back to the beginning"
+    assert desk.tab(back=True) == ["in strip"]
+    desk.key(K.mod_ctrl, K.tab)
+    desk.run_frames(2)
+    assert focus.current_pane() == "panel"
+    desk.key(K.mod_ctrl, K.mod_shift, K.tab)
+    desk.run_frames(2)
+    assert focus.current_pane() == "strip"
+
+
+def test_a_slider_is_moved_and_typed_by_keys(desk: Desk) -> None:
+    desk.walk("##height.level")
+    desk.key(K.space)
+    for _ in range(5):
+        desk.key(K.right_arrow)
+    desk.key(K.space)
+    moved = desk.value("level")
+    assert isinstance(moved, float) and moved > 0.5
+    assert not desk.session.clock.playing or not desk.session.animated
+    desk.key(K.enter)
+    desk.run_frames(6)
+    assert imgui.get_io().want_text_input
+    desk.type("1/4")
+    desk.key(K.enter)
+    desk.run_frames(3)
+    assert desk.value("level") == 0.25
+
+
+def test_boxes_lists_and_menus_take_keys(desk: Desk) -> None:
+    desk.walk("##height.flat_")
+    desk.key(K.space)
+    assert desk.value("flat_") is True
+    desk.walk("##height.kind")
+    desk.key(K.space)
+    desk.run_frames(2)
+    desk.key(K.down_arrow)
+    desk.key(K.enter)
+    desk.run_frames(2)
+    assert desk.value("kind") == 1
+    desk.key(K.menu)
+    desk.run_frames(3)
+    desk.key(K.down_arrow)  # from "Type a value" to "Reset"
+    desk.key(K.enter)
+    desk.run_frames(2)
+    assert desk.value("kind") == 0
+
+
+def test_escape_ends_one_thing_at_a_time(desk: Desk) -> None:
+    desk.walk("Save")
+    desk.key(K.space)
+    desk.run_frames(3)
+    assert imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
+    desk.key(K.escape)
+    assert not imgui.is_popup_open("", imgui.PopupFlags_.any_popup) and desk.focused() == "Save"
+    playing = desk.session.clock.playing
+    desk.key(K.space)
+    desk.key(K.escape)
+    assert desk.session.clock.playing == playing, "Space is the control's"
+    desk.key(K.escape)
+    assert desk.focused() == "" and not desk.bench.notices.items
+    desk.key(K.space)
+    assert desk.session.clock.playing != playing, "now it is the picture's"
+    desk.tab()
+    imgui.get_io().add_mouse_pos_event(600, 600)
+    desk.press(True)
+    desk.press(False)
+    assert desk.focused() == "", "a click ends it"
+
+
+def test_the_graph_and_the_focus_share_no_keys(desk: Desk) -> None:
+    desk.bench.tabs[:] = [passes_tab(desk.bench)]
+    desk.run_frames(3)
+    for pane in ("panel", "code pane", "strip"):
+        desk.key(K.mod_ctrl, K.tab)
+        desk.run_frames(2)
+        assert focus.current_pane() == pane
+    desk.walk("canvas")
+    desk.key(K.space)
+    desk.run_frames(3)
+    assert desk.bench.inspection.graph.has_keys and desk.focused() == ""
+    chosen = desk.bench.inspection.graph.chosen
+    desk.key(K.right_arrow)
+    assert desk.bench.inspection.graph.chosen != chosen and desk.focused() == ""
+    desk.key(K.escape)
+    assert not desk.bench.inspection.graph.has_keys
+    assert desk.tab() != [""]
