@@ -524,7 +524,7 @@ class Show:
             if self.is_still:
                 raise DataError(self.prospect.error)
             if not self.settle():
-                raise DataError("no capture was made, for what was painted last could not be written")
+                raise DataError(tr("no capture was made, for what was painted last could not be written"))
             job = self.job()
         except PlaygroundError as error:
             self.failed = str(error)
