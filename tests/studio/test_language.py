@@ -131,8 +131,8 @@ def test_french_lines_are_written_as_french() -> None:
 
 def test_no_french_line_breaks_before_its_colon() -> None:
     choose_language("fr")
-    assert tr("Trace: {spot}", spot="a") == "Trace\xa0: a"
-    assert tr("no parameter of this sketch takes a file like {name}, so it has no place in it", name="a.png")
+    assert tr("functions: {name}", name="a") == "fonctions\xa0: a"
+    assert tr("pass '{path}'", path="a") == "pass 'a'", "which has no line"
 
 
 def test_numbers_have_their_plural_in_both() -> None:

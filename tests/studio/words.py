@@ -10,9 +10,7 @@ from pathlib import Path
 import playground
 
 ROOT = Path(playground.__file__).resolve().parent
-MODULES = sorted(
-    {*(ROOT / "studio").rglob("*.py"), *ROOT.glob("*/window/*.py"), *ROOT.glob("*/addition.py")}
-)
+MODULES = sorted({*(ROOT / "studio").rglob("*.py"), *ROOT.glob("*/window/*.py"), *ROOT.glob("*/addition.py")})
 """The modules of the window, and those that rooms add to it."""
 
 TRANSLATE = {"tr", "tr_label", "counted", "shortcut"}
@@ -64,7 +62,7 @@ SHOW = {
 """The functions that show the words that they are given, or remember them to be shown."""
 KEY = re.compile(r"[A-Z][a-z]\w+")
 """A key in a shortcut whose name is a word."""
-NAMES = {"menu": {1}, "report_once": {0}, "step": {1}, "slot_button": {0}, "cross": {0}}
+NAMES = {"menu": {1}, "report_once": {0}, "step": {1}, "slot_button": {0}, "cross": {0}, "_stepper": {0}}
 """Which of a function's arguments is a name that nobody sees."""
 READ = {"get", "split", "partition", "rpartition", "join", "value", "getattr", "removesuffix", "replace"}
 """Functions whose own words are looked for, or stand between others."""
@@ -171,7 +169,14 @@ def _untranslated(
             for value in local.get(name, [constants[name]] if name in constants else []):
                 if not isinstance(value, ast.Call | ast.Lambda):
                     yield from _untranslated(value, {}, {})
-        case ast.Compare() | ast.Subscript() | ast.Lambda() | ast.Attribute() | ast.Dict():
+        case (
+            ast.Compare()
+            | ast.comprehension()
+            | ast.Subscript()
+            | ast.Lambda()
+            | ast.Attribute()
+            | ast.Dict()
+        ):
             return
         case ast.IfExp(body=body, orelse=other):
             yield from _untranslated(body, local, constants)
