@@ -18,7 +18,7 @@ from playground.paths import shown
 from playground.studio import theme
 from playground.studio.draw import Area, button, choose, fitting, fitting_path, wrapped
 from playground.studio.interface import Tab
-from playground.studio.language import tr
+from playground.studio.language import counted, tr
 from playground.studio.theme import Theme
 from playground.studio.trace.tracing import Beside, Tracing
 from playground.studio.trace.values_panel import full_text
@@ -246,7 +246,8 @@ def state_of(tracing: Tracing) -> tuple[str, theme.Rgb]:
             theme.palette.dim,
         )
     trace = view.trace
-    parts = [tr("{values} values of {calls} calls", values=len(trace.events), calls=len(trace.calls))]
+    values, calls = counted(len(trace.events), "value"), counted(len(trace.calls), "call")
+    parts = [tr("{values} of {calls}", values=values, calls=calls)]
     if not trace.is_complete:
         parts.append(tr("cut at the limit of events"))
     if trace.is_discarded:

@@ -14,7 +14,7 @@ from playground.errors import PlaygroundError
 from playground.studio import theme
 from playground.studio.draw import button, explain, fitting, next_in_row, pushed_id
 from playground.studio.interface import Tab
-from playground.studio.language import tr
+from playground.studio.language import counted, tr
 from playground.studio.start.thumbnails import CELL, read_picture
 from playground.studio.theme import Theme
 from playground.studio.versions.store import Version
@@ -255,5 +255,5 @@ def _note(version: Version) -> str:
     lines = [datetime.fromtimestamp(version.at).strftime("%Y-%m-%d %H:%M:%S")] if version.name else []
     with suppress(PlaygroundError):
         count = len(version.state.edits.values)
-        lines.append(tr("{files} texts, {values} values set", files=len(version.texts), values=count))
+        lines.append(f"{counted(len(version.texts), 'text')}, {counted(count, 'set value')}")
     return "\n".join(lines)
