@@ -67,13 +67,13 @@ def draw_numbers(parameter: Parameter, numbers: Sequence[float], label: str) -> 
         return None if changed is None else [changed]
     wide = imgui.calc_item_width()
     spacing = imgui.get_style().item_inner_spacing.x
-    column = min(max(imgui.calc_text_size(name).x for name in names) + spacing, wide / 2)
+    column = min(max(imgui.calc_text_size(tr_label(name)).x for name in names) + spacing, wide / 2)
     largest = max(abs(n) for n in numbers)
     values: list[float] | None = None
     imgui.begin_group()
     for at, name in enumerate(names):
         imgui.align_text_to_frame_padding()
-        imgui.text_disabled(name)
+        imgui.text_disabled(tr_label(name))
         imgui.same_line(column)  # from the group's left edge
         imgui.push_item_width(wide - column)
         changed = _draw_one(parameter, numbers[at], largest, f"{label}.{name}")

@@ -49,7 +49,7 @@ from playground.studio.land.land import (
 )
 from playground.studio.land.looks import LOOKS, look_of, look_title
 from playground.studio.land.walk import Walk
-from playground.studio.language import tr
+from playground.studio.language import tr, tr_label
 from playground.studio.panel.parameter_list import Item
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -130,7 +130,7 @@ class TerrainGroup:
             imgui.text_disabled(tr("no light changes this look"))
             return
         parameter, value = sun
-        with row(parameter.title, tr("The light of this look; that of the sketch stays as it is")):
+        with row(tr_label(parameter.title), tr("The light of this look; that of the sketch stays as it is")):
             changed = draw_value(parameter, value, WidgetSlot(f"{TYPE_ROW}look sun", look.scale, Path()))
         if changed is not None:
             session.view.show_as(seen.with_sun(changed))

@@ -309,7 +309,7 @@ def draw_history(memory: PanelState, undo: Undo, look: Theme) -> None:
         if value is None:
             return tr("the file's")
         item = items.get(path)
-        return write(item.parameter, value) if item else spell(value)  # type: ignore[arg-type]
+        return tr_label(write(item.parameter, value)) if item else spell(value)  # type: ignore[arg-type]
 
     for number, step in enumerate(history.steps, 1):
         text = fitting(step_label(step, name_of, written), wide - 20 * look.scale)

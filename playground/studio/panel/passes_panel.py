@@ -390,7 +390,7 @@ class _Drawing:
             flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.span_avail_width
             flags |= imgui.TreeNodeFlags_.allow_overlap | imgui.TreeNodeFlags_.no_tree_push_on_open
             with inked(theme.palette.dim):
-                opened = imgui.tree_node_ex(f"{group.name}###{where} {group.name}", flags)
+                opened = imgui.tree_node_ex(f"{tr_label(group.name)}###{where} {group.name}", flags)
             self._reset(group.name, group.items)
             if opened:
                 self._rows(group)
@@ -421,7 +421,7 @@ class _Drawing:
         imgui.same_line(imgui.get_window_width() - imgui.get_style().scrollbar_size - slot())
         note = tr("{parameters} back to the file's values", parameters=counted(len(paths), "parameter"))
         if cross(f"##reset {name}", note, high):
-            self.actions.reset(name, paths)
+            self.actions.reset(tr_label(name), paths)
 
 
 def _files(spec: PassSpec, files: OpenFiles) -> None:
