@@ -414,7 +414,7 @@ def _take_or_leave_keys(files: OpenFiles) -> None:
     if asked or is_clicked:
         files.pane.asked_at = now
     if is_clicked and not files.pane.has_keys and files.current is not None:
-        _view_of(files.current).editor.set_focus()  # a right click alone does not
+        _view_of(files.current, files).editor.set_focus()  # a right click alone does not
     is_new = now - files.pane.asked_at <= _JUST
     if not imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows) or focus.is_shown():
         files.pane.has_keys = files.pane.has_keys and is_new
