@@ -21,7 +21,7 @@ STEP = WIDE + 54.0
 """From one column to the next."""
 MOST = 1.25
 """The zoom at which a graph that fits is drawn at most."""
-ZOOMS = (0.15, 3.0)
+ZOOMS = (0.08, 3.0)
 
 
 @dataclass

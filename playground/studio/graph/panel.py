@@ -51,7 +51,8 @@ from playground.studio.theme import Theme
 
 _THUMB = 54.0
 _TEXT = 78.0  # where a node's text begins
-_LEGIBLE = 0.45  # of the size of letters: below, nothing is written
+_LEGIBLE = 0.45  # of the size of letters: below, a node has its name alone, no smaller than this
+_LEAST = 10.5  # [units] of that name
 _NEAR = 8.0  # [units] that the mouse may be away from a pin or a wire
 _PLUS = 9.0  # [units] radius of the + on a wire
 _NUDGE = {(-1, 0): (-0.25, 0.0), (1, 0): (0.25, 0.0), (0, -1): (0.0, -0.5), (0, 1): (0.0, 0.5)}
@@ -462,8 +463,14 @@ class GraphPanel:
                 self._drag = _Drag(name, (at[0] - x, at[1] - y), wiring.layout.places[name])
                 self._fits = False
         self._draw_box(node, low, far, canvas)
+        size = _LEAST * canvas.scale
+        if canvas.zoom < _LEGIBLE and size < HIGH * k:
+            place = ImVec2(low.x + 7 * canvas.scale, (low.y + far.y - 1.2 * size) / 2)
+            ink = theme.palette.dim if node.is_muted else theme.palette.ink
+            write(name.rpartition(".")[2], look.bold, size, place, WIDE * k - 12 * canvas.scale, ink)
+            return
         self._draw_picture(node, canvas.place(x + 14, y + 5), _THUMB * k)
-        if canvas.k < _LEGIBLE:  # what could not be read is not written
+        if canvas.zoom < _LEGIBLE:
             return
         is_marked = node.is_hovered or node.is_muted or node.is_shown or name == graph.chosen
         has_buttons = is_marked and graph.inside is None and name != "view"
