@@ -126,5 +126,21 @@ def test_tour_of_passes(app: Passes) -> None:
     app.becomes(added)
     do("key", "ctrl+z")
     app.becomes(HILLS)
+
+    time.sleep(1.0)  # until the graph fits its pane again
+    x, y = app.at("node height", 0.2)
+    do("mousemove", x, y)
+    time.sleep(0.3)
+    do("mousedown", 1)
+    for step in (20, 60):
+        do("mousemove", x - step, y - step // 4)
+        time.sleep(0.3)
+    do("mouseup", 1)
+    moved = app.at("node height", 0.2)
+    assert abs(moved[0] - x + 60) < 3 and abs(moved[1] - y + 15) < 3 and app.text() == HILLS
     do("key", "Escape", "key", "ctrl+q")
     assert app.ended() == 0, app.complaint()
+    kept = [
+        json.loads(path.read_text("utf-8")) for path in app.file.parents[1].rglob("state/**/sketch-*.json")
+    ]
+    assert [node for state in kept for node, _ in state["places"]] == ["height"]
