@@ -1,4 +1,4 @@
-"""The code pane in a real window: a kernel is typed, broken and repaired, all before it is saved."""
+"""The code pane in a real window: a kernel is typed, broken, repaired, saved, and a name in it changed."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def window_on(screen: Screen, folder: Path) -> Program:
     return Program(screen, folder, command, folder, code=True)
 
 
-def test_a_kernel_is_typed_broken_and_repaired(screen: Screen, tmp_path: Path) -> None:
+def test_a_kernel_is_typed_broken_repaired_and_renamed(screen: Screen, tmp_path: Path) -> None:
     file = tmp_path / "terrain.glsl"
     file.write_text(KERNEL, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(HILLS, encoding="utf-8")
@@ -50,6 +50,16 @@ def test_a_kernel_is_typed_broken_and_repaired(screen: Screen, tmp_path: Path) -
         screen.do("key", "ctrl+s")
         window.wait(lambda now: not now["unsaved"])
         assert "+ 0.3 * sin(0.2 * float(texel.x));" in file.read_text(encoding="utf-8")
+        screen.do("key", "ctrl+Home")
+        screen.do("key", "--delay", 30, "Down", "Down", *["Right"] * 16, "F2")
+        time.sleep(0.5)
+        screen.do("type", "--delay", 40, "rise")
+        screen.do("key", "Return")
+        window.wait(lambda now: now["unsaved"] and not now["error"])
+        screen.do("key", "ctrl+s")
+        window.wait(lambda now: not now["unsaved"])
+        saved = file.read_text(encoding="utf-8")
+        assert "float rise = 0.5;" in saved and "return rise + 0.3" in saved and "level" not in saved
         screen.do("key", "Escape")
         window.wait(lambda now: not now["typing"])
         screen.do("key", "m")

@@ -304,10 +304,12 @@ class OpenFiles:
     def reveal(self, path: Path, line: int) -> None:
         """Show a line of a file in the code pane, without giving it the keys."""
         try:
-            editing = self.tab_of(path)
+            editing = self.copy_of(path) or self.tab_of(path)
         except PlaygroundError as error:
             self.notices.say(str(error))
             return
+        if all(other is not editing for other in self.editing):
+            self.editing.append(editing)
         editing.line, editing.column, editing.focus = max(line, 1), 1, True
         editing.takes_keys = False
 

@@ -921,9 +921,10 @@ def _draw_completion(view: _View, look: Theme) -> None:
         about = _about(chosen)
         if chosen.include:
             about = tr("adds #include {file}", file=chosen.include) + (f"; {about}" if about else "")
-        imgui.separator()
-        with look.font(look.text, theme.SMALL):
-            imgui.text_disabled(_cut(about, 64) or chosen.detail or chosen.kind)
+        if about or chosen.detail:
+            imgui.separator()
+            with look.font(look.text, theme.SMALL):
+                imgui.text_disabled(_cut(about, 64) or chosen.detail)
 
 
 def _about(suggestion: Suggestion) -> str:

@@ -121,13 +121,16 @@ class _Lines:
                 return
 
     def _make_room(self, row: Row, spot: _Spot) -> None:
-        """Cover the end of a long line, but that of the cursor, where its values have no room behind it."""
+        """Cover the end of a long line that has no room for values, but that of the cursor or the mouse."""
         whole = sum(len(text) + 1 for item in row.items for text, _ in _pieces(item))
         needs = min(whole, _COVER) * self.wide
         has_room = not row.items or spot.right - spot.x >= needs
         if row.number == self.tracing.caret.line or row.loops or has_room:
             return
-        spot.x = spot.right - needs
+        mouse, x = imgui.get_mouse_pos(), spot.right - needs
+        if imgui.is_window_hovered() and mouse.x < x and spot.y <= mouse.y < spot.y + self.high:
+            return  # the mouse is on the code
+        spot.x = x
         low, high = ImVec2(spot.x - self.wide / 2, spot.y), ImVec2(spot.right, spot.y + self.high)
         self.sink.add_rect_filled(low, high, theme.packed(theme.palette.raised, 0.95))
 
