@@ -234,10 +234,18 @@ class Actions:
         )
         return copies[path]
 
-    def save_as_preset(self, name: str) -> None:
-        """Save the edited values as a preset of the sketch."""
+    def has_preset(self, name: str) -> bool:
+        """Return whether the sketch's file has a preset of that name."""
+        draft = self.session.shown
+        return draft is not None and any(preset.name == name.strip() for preset in draft.file.presets)
+
+    def save_as_preset(self, name: str, *, replaces: bool = False) -> None:
+        """Save the edited values as a preset of the sketch; only with ``replaces`` over one of that name."""
         draft = self._ready()
         if draft is None or not name.strip():
+            return
+        if self.has_preset(name) and not replaces:
+            self.notices.say(tr("there is a preset {name}; Replace writes over it", name=name.strip()))
             return
         values = {path: value for path, value in draft.applied.items() if not isinstance(value, str)}
         if not values:

@@ -194,7 +194,7 @@ def test_preset_shows_changes_since_and_new_one_is_saved(bare: Bare, folder: Pat
     bare.click("Save")
     bare.click("##name")
     bare.type("mine")
-    bare.click("Save preset")
+    bare.click("Save preset###save preset")
     bare.run_frames(5)
     assert 'name = "mine"' in (folder / "sketch.toml").read_text(encoding="utf-8")
     assert bare.session.sketch is not None and [p.name for p in bare.session.sketch.presets] == [
@@ -252,6 +252,46 @@ def test_presets_are_moved_and_deleted_each_as_one_step(bare: Bare, folder: Path
     bare.bench.undo.redo()
     bare.run_frames(5)
     assert names() == ["high", "low", "middle"]
+
+
+def test_presets_are_moved_and_deleted_by_keys(bare: Bare, folder: Path) -> None:
+    path = folder / "sketch.toml"
+    path.write_text(SKETCH.partition("[[preset]]")[0] + PRESETS, encoding="utf-8")
+    bare.session.drafts.reload()
+    bare.run_frames(5)
+    io = imgui.get_io()
+    io.config_flags |= imgui.ConfigFlags_.nav_enable_keyboard
+
+    def names() -> list[str]:
+        bare.run_frames(5)
+        return [preset.name for preset in bare.session.sketch.presets] if bare.session.sketch else []
+
+    bare.click("…###preset order")
+    bare.click("low###preset 0")
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.down_arrow)
+    assert names() == ["high", "low", "middle"]
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.down_arrow)
+    assert names() == ["high", "middle", "low"], "the keys went with it"
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.up_arrow)
+    assert names() == ["high", "low", "middle"]
+    bare.key(imgui.Key.delete)
+    assert names() == ["high", "middle"]
+
+
+def test_a_preset_is_not_written_over_unasked(bare: Bare, folder: Path) -> None:
+    path, before = folder / "sketch.toml", (folder / "sketch.toml").read_text(encoding="utf-8")
+    bare.session.drafts.set("height.level", 0.125)
+    bare.click("Save")
+    bare.click("##name")
+    bare.type("high")
+    bare.key(imgui.Key.enter)
+    bare.run_frames(5)
+    assert path.read_text(encoding="utf-8") == before and "there is a preset high" in notices_of(bare)
+    bare.click("Replace preset###save preset")
+    bare.run_frames(5)
+    assert path.read_text(encoding="utf-8") != before
+    assert bare.session.sketch is not None
+    assert dict(bare.session.sketch.presets[0].values)["height.level"] == 0.125
 
 
 def test_a_preset_that_a_shot_uses_is_not_deleted(bare: Bare, folder: Path) -> None:

@@ -26,6 +26,7 @@ from playground.studio.draw import (
     button,
     buttons,
     choose,
+    ctrl_held,
     disabled,
     first_lines,
     fitting,
@@ -422,8 +423,13 @@ def _preset_to_save(memory: PanelState, actions: Actions) -> None:
     entered, memory.preset_name = imgui.input_text_with_hint("##name", hint, memory.preset_name, enter)
     imgui.same_line()
     name = memory.preset_name.strip()
-    if button(tr("Save preset"), enabled=bool(name)) or (entered and name):
-        actions.save_as_preset(name)
+    taken = actions.has_preset(name)
+    label = tr("Replace preset") if taken else tr("Save preset")
+    note = tr("There is one of that name: it is written over, which undo takes back") if taken else ""
+    pressed = button(f"{label}###save preset", note, enabled=bool(name))
+    if pressed or (entered and name):
+        actions.save_as_preset(name, replaces=pressed and taken)
+    if pressed or (entered and name and not taken):
         memory.preset = name
         imgui.close_current_popup()
 
@@ -451,7 +457,7 @@ def _presets(sketch: Sketch, memory: PanelState, actions: Actions) -> None:
 
 
 def _preset_order(sketch: Sketch, actions: Actions) -> None:
-    """Draw the menu that moves and deletes presets."""
+    """Draw the menu that moves and deletes presets, by its buttons or by the keys of a name."""
     with menu("…###preset order", "preset order", tr("Move and delete presets")) as opened:
         if not opened:
             return
@@ -460,7 +466,11 @@ def _preset_order(sketch: Sketch, actions: Actions) -> None:
         start = imgui.get_cursor_pos_x()
         for number, preset in enumerate(sketch.presets):
             imgui.align_text_to_frame_padding()
-            imgui.text_unformatted(preset.name)
+            stays = imgui.SelectableFlags_.no_auto_close_popups
+            imgui.selectable(f"{preset.name}###preset {number}", False, stays, ImVec2(wide, 0))
+            if imgui.is_item_focused():
+                _act_on_preset(preset.name, actions)
+            imgui.set_item_tooltip(tr("Ctrl+Up, Ctrl+Down: move   Delete: delete"))
             imgui.same_line(start + wide + 2 * imgui.get_style().item_spacing.x)
             buttons(
                 (f"{tr('Up')}###up {number}", "", partial(actions.move_preset, preset.name, -1), number > 0),
@@ -472,6 +482,17 @@ def _preset_order(sketch: Sketch, actions: Actions) -> None:
                 ),
                 (f"{tr('Delete')}###delete {number}", "", partial(actions.delete_preset, preset.name), True),
             )
+
+
+def _act_on_preset(name: str, actions: Actions) -> None:
+    """Act on the keys of the preset whose name has them; the keys move on with it."""
+    ctrl = ctrl_held()
+    if imgui.is_key_pressed(imgui.Key.delete, repeat=False):
+        actions.delete_preset(name)
+    elif ctrl and imgui.is_key_pressed(imgui.Key.up_arrow):
+        actions.move_preset(name, -1)
+    elif ctrl and imgui.is_key_pressed(imgui.Key.down_arrow):
+        actions.move_preset(name, 1)
 
 
 def _differing(sketch: Sketch, preset: Preset) -> list[str]:
