@@ -30,7 +30,7 @@ SLOWEST, FASTEST = 0.5, 500.0
 """[m/s] that one walks."""
 STRIDE = 4.0
 """Times as fast, with Shift."""
-_CROSSING = 120.0  # [s] in which the longer side is walked at first
+_CROSSING = 300.0  # [s] in which the longer side is walked at first
 _NOTCH = 1.25  # times as fast for a notch of the wheel
 _AHEAD = 250.0  # [m] of the target: near enough to keep the nearest ground, far enough for the depth buffer
 _STEEPEST = 85.0  # [degrees] that one looks up or down
