@@ -38,7 +38,7 @@ def hide() -> None:
 def panes() -> list[str]:
     """Return the names of the windows that can have the focus, in the order of Ctrl+Tab."""
     shown = [w for w in imgui.get_current_context().windows if w.was_active and not w.flags & _NO_FOCUS]
-    shown = [w for w in shown if not w.hidden and not w.name.startswith("Debug##")]
+    shown = [w for w in shown if not w.hidden and w.dc.nav_layers_active_mask & 1]
     ranks = {name: rank for rank, name in enumerate(_LAST, 1)}
     return [w.name for w in sorted(shown, key=lambda w: (ranks.get(w.name, 0), w.pos.x, w.pos.y))]
 

@@ -57,7 +57,7 @@ def draw_readout(
         ground = theme.colour(theme.palette.ground, 0.8)
         with window("readout", _READOUT, ground=ground, rounding=5 * look.scale, sizes=sizes):
             corner = imgui.get_cursor_screen_pos()
-            if imgui.invisible_button("readout", ImVec2(wide, high)):
+            if imgui.invisible_button("readout", ImVec2(wide, high), imgui.ButtonFlags_.enable_nav):
                 interface.panel_shown, inspection.costs_asked = True, True
             ink = theme.palette.ink if imgui.is_item_hovered() else theme.palette.dim
             place = ImVec2(corner.x + pad, corner.y + pad)
