@@ -78,6 +78,7 @@ def update(focus: KeyFocus, *, always: bool, barred: bool) -> None:
     """
     context, io = imgui.get_current_context(), imgui.get_io()
     context.config_nav_windowing_key_next = context.config_nav_windowing_key_prev = 0
+    context.config_nav_enable_tabbing = not barred
     io.config_nav_escape_clear_focus_item = io.config_nav_capture_keyboard = False
     in_popup = len(context.open_popup_stack) > 0
     is_on = is_shown() or always or in_popup or io.want_text_input
