@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from playground.studio.keys import GESTURES, keys_by_meaning
+from playground.studio.keys import CONTROL_KEYS, GESTURES, STEERING_KEYS, keys_by_meaning
 
 from .markdown import code, escaped, table
 
@@ -20,11 +20,14 @@ def page() -> str:
         (", ".join(code(name) for name in names), escaped(meaning))
         for meaning, names in keys_by_meaning().items()
     ]
+    by_focus = [(escaped(keys), escaped(meaning)) for keys, meaning in (*STEERING_KEYS, *CONTROL_KEYS)]
     gestures = [(escaped(gesture), escaped(meaning)) for gesture, meaning in GESTURES]
     return (
         _HEAD
         + "## Keys\n\n"
         + table(("Key", "What it does"), rows)
+        + "## Without a mouse\n\n"
+        + table(("Key", "What it does"), by_focus)
         + "## Mouse\n\n"
         + table(("Gesture", "What it does"), gestures)
     )

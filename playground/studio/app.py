@@ -47,7 +47,8 @@ from playground.studio.graph.panel import passes_tab
 from playground.studio.guard import Guard
 from playground.studio.interface import WindowControls, remembered_preferences
 from playground.studio.keyframes.panel import height_of_timeline
-from playground.studio.keys import PictureKeys, act_on_keys, draw_keymap
+from playground.studio.keymap_panel import draw_keymap
+from playground.studio.keys import PictureKeys, act_on_keys
 from playground.studio.language import choose_language, tr
 from playground.studio.mouse import PictureMouse
 from playground.studio.overlay import (

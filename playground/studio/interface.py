@@ -192,8 +192,9 @@ class Interface:
 
     panel_shown: bool = True
     keymap_shown: bool = False
+    keymap_search: str = ""
     settings_asked: bool = False  # the menu of settings is to open
-    searching: bool = False  # the panel is to give its search the keys
+    searching: bool = False  # the search of the panel, or of the key map, is to get the keys
     reveal: str = ""  # the pass that the panel is to scroll to
     preferences: Preferences = field(default_factory=Preferences)
     ahead: TypedAhead = field(default_factory=TypedAhead)
@@ -208,8 +209,8 @@ class Interface:
         self.panel_shown = not self.panel_shown
 
     def search(self) -> None:
-        """Show the panel, and give its search the keys."""
-        self.panel_shown = self.searching = True
+        """Give a search the keys: the key map's while that is open, else the panel's, which is shown."""
+        self.panel_shown, self.searching = self.panel_shown or not self.keymap_shown, True
 
     def ask_settings(self) -> None:
         """Open the menu of the window's settings, in the panel where no start page is shown."""
@@ -217,7 +218,7 @@ class Interface:
 
     def toggle_keymap(self) -> None:
         """Show what every key does, or no longer."""
-        self.keymap_shown = not self.keymap_shown
+        self.keymap_shown, self.keymap_search = not self.keymap_shown, ""
 
 
 def resize(preferences: Preferences, by: int, notices: Notices) -> None:

@@ -12,27 +12,25 @@ from dataclasses import dataclass
 from functools import cache, partial
 from itertools import chain
 
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import imgui
 
 from playground import rooms
 from playground.sketch.traits import traits_of
-from playground.studio import focus, theme
+from playground.studio import focus
 from playground.studio.addition import Layer
 from playground.studio.bench import Workbench
 from playground.studio.code.panel import close_smaller, give_back_keys, stay, typing
 from playground.studio.draw import (
-    QUIET,
     ctrl_held,
     keeps_keys,
     left_a_field,
     letters,
-    table,
-    window,
 )
-from playground.studio.interface import Interface, resize
-from playground.studio.language import shortcut, tr
+from playground.studio.interface import resize
+from playground.studio.language import tr
+from playground.studio.mouse import steer
 from playground.studio.paint.brush import TOOLS, Tool
-from playground.studio.theme import Theme
+from playground.studio.picture.gestures import Gesture
 
 
 @dataclass(frozen=True)
@@ -321,6 +319,29 @@ def act_on_keys(bench: Workbench) -> None:
         if pressed and not walks and (bench.painting.on or not key.brush):
             key.act(bench)
             bench.interface.preferences.use_key(key.name)
+    if not has_focus and not bench.interface.keymap_shown:
+        _steer(bench, ctrl=ctrl, shift=shift)
+
+
+_ARROWS = {_K.left_arrow: (-1, 0), _K.right_arrow: (1, 0), _K.up_arrow: (0, -1), _K.down_arrow: (0, 1)}
+_STEP = 0.025  # of the picture's height: so far an arrow key drags the terrain, or the sun
+
+
+def _steer(bench: Workbench, *, ctrl: bool, shift: bool) -> None:
+    """Do with the arrows what drags do, and with + and - what the wheel does."""
+    session = bench.session
+    if session.sketch is None or traits_of(session.sketch).keys:
+        return  # a picture that reads the keyboard reads these
+    across, down = 0, 0
+    for key, (right, low) in _ARROWS.items():
+        if imgui.is_key_pressed(key, repeat=True):
+            across, down = across + right, down + low
+    wheel = 0 if ctrl else letters().count("+") - letters().count("-")
+    if ctrl and (across or down):
+        session.move_suns(across * _STEP, -down * _STEP)
+    elif across or down or wheel:
+        moved = Gesture(1.0, across * _STEP, down * _STEP, wheel, orbiting=not shift, panning=shift)
+        steer(session, moved)
 
 
 def _move_focus(bench: Workbench) -> bool:
@@ -351,40 +372,47 @@ GESTURES = (
 """What a mouse does."""
 
 
-_AROUND = 5
-"""Lines that the heading and the margins take; where all do not fit, the text is smaller."""
-_SIZES = theme.TEXT_SIZE, theme.SMALL, theme.SMALL - 1, theme.SMALL - 2
+CONTROL_KEYS = (
+    ("Tab, Shift+Tab", "the next control, the one before"),
+    ("Ctrl+Tab, Ctrl+Shift+Tab", "the next pane, the one before"),
+    ("Space, Enter", "press the control; Enter types a number, arrows move a slider that was pressed"),
+    ("Menu, Shift+F10", "a parameter's menu"),
+)
+"""What the keyboard does with the controls of a pane."""
+STEERING_KEYS = (
+    ("Arrows", "orbit the terrain"),
+    ("Shift+Arrows", "move along the ground"),
+    ("Ctrl+Arrows", "move the sun"),
+    ("+, -", "nearer, farther"),
+)
+"""What it does with the picture, while no control shows the focus."""
+
+_SUBJECTS = {
+    "Picture": ("R", "M", "A", "I", "T", "S", "C", "F4", "F11"),
+    "Time": ("Space", ",", ".", "L", "0"),
+    "Sketch and versions": (
+        *("O", "Backspace, Shift+Backspace", "Ctrl+Z", "Ctrl+Shift+Z", "Ctrl+Y", "Ctrl+S", "Ctrl+V", "V"),
+        *("F6, Shift+F6", "Ctrl+F6"),
+    ),
+    "Code and passes": ("Ctrl+E", "E, Shift+E", "F8, Shift+F8", "G"),
+    "Window": ("H", "/", "?", "F1", "F10", "Ctrl++", "Ctrl+-", "Ctrl+0", "Esc", "Ctrl+Q"),
+    "Brush": ("B",),
+}
+"""The subjects of the key map, in its order, and the names of their keys; those of rooms are "More"."""
 
 
-def draw_keymap(interface: Interface, look: Theme) -> None:
-    """Draw the key map in the middle of the window, while it is open."""
-    if not interface.keymap_shown:
-        return
-    room = imgui.get_main_viewport().size
-    imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.always, ImVec2(0.5, 0.5))
-    imgui.set_next_window_size_constraints(ImVec2(0, 0), ImVec2(room.x - 16, room.y - 16))
-    flags = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move
-    flags |= imgui.WindowFlags_.no_resize | imgui.WindowFlags_.always_auto_resize
-    cell = {imgui.StyleVar_.cell_padding: ImVec2(4 * look.scale, 0)}  # a small window has room for all
-    with window(
-        "keys", flags, ground=theme.colour(theme.palette.popup, 0.98), rounding=8 * look.scale, sizes=cell
-    ):
-        with look.font(look.bold, theme.TEXT_SIZE + 2):
-            imgui.text_unformatted(tr("Keys"))
-        names = [(shortcut(", ".join(names)), tr(meaning)) for meaning, names in keys_by_meaning().items()]
-        rows = *names, *((tr(gesture), tr(meaning)) for gesture, meaning in GESTURES)
-        line = imgui.get_text_line_height() / theme.TEXT_SIZE
-        fitting = (s for s in _SIZES if (len(rows) + _AROUND) * line * s <= room.y)
-        with look.font(look.text, next(fitting, _SIZES[-1])):
-            warm = theme.colour(theme.palette.warm)
-            cells = [
-                (partial(imgui.text_colored, warm, keys), partial(imgui.text_unformatted, meaning))
-                for keys, meaning in rows
-            ]
-            table("keys", 2, cells, imgui.TableFlags_.sizing_fixed_fit)
-        inside = imgui.is_window_hovered(imgui.HoveredFlags_.child_windows)
-        if imgui.is_mouse_clicked(0) and not inside and not imgui.is_window_appearing():
-            interface.keymap_shown = False
+def keys_by_subject() -> dict[str, list[tuple[str, str]]]:
+    """Return the rows of the key map, keys and meaning in English, by subject."""
+    subjects = {name: subject for subject, names in _SUBJECTS.items() for name in names}
+    rows: dict[str, list[tuple[str, str]]] = {subject: [] for subject in _SUBJECTS}
+    brush = {key.meaning for key in all_keys() if key.brush}
+    for meaning, names in keys_by_meaning().items():
+        subject = "Brush" if meaning in brush else subjects.get(names[0], "More")
+        rows.setdefault(subject, []).append((", ".join(names), meaning))
+    rows["Picture"] = [*STEERING_KEYS, *rows["Picture"]]
+    rows["Window"] = [*CONTROL_KEYS, *rows["Window"]]
+    rows["Mouse"] = list(GESTURES)
+    return rows
 
 
 def keys_by_meaning() -> dict[str, list[str]]:

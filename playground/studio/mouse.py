@@ -56,13 +56,7 @@ class PictureMouse:
             orbiting=left and not io.key_shift,
             panning=right or (left and io.key_shift),
         )
-        if gesture.acts and session.orbits:
-            by_hand = session.shown is not None and session.shown.edits.camera is not None
-            # Keyframes move the camera; a drag begins where it was in the picture that is shown.
-            plan, sketch = session.plan, session.sketch
-            camera = sketch.camera if by_hand else sketch.at(plan.time).camera
-            seen = steered_through(session.view.seen(camera), plan.eye, gesture, plan.sketch.camera)
-            session.drafts.set_camera(session.view.unseen(seen, camera))
+        steer(session, gesture)
         x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density
         pressed = imgui.is_mouse_down(0)
         session.hover((x, y), pressed=pressed, clicked=imgui.is_mouse_clicked(0))
@@ -125,6 +119,18 @@ class PictureMouse:
         if corners:
             draw = imgui.get_background_draw_list()
             draw.add_polyline(corners, theme.packed(theme.palette.warm), 2, imgui.ImDrawFlags_.closed)
+
+
+def steer(session: Session, gesture: Gesture) -> None:
+    """Move the camera of the picture that is shown, where it has one that moves."""
+    plan, sketch = session.plan, session.sketch
+    if not gesture.acts or not session.orbits or plan is None or sketch is None:
+        return
+    by_hand = session.shown is not None and session.shown.edits.camera is not None
+    # Keyframes move the camera; a drag begins where it was in the picture that is shown.
+    camera = sketch.camera if by_hand else sketch.at(plan.time).camera
+    seen = steered_through(session.view.seen(camera), plan.eye, gesture, plan.sketch.camera)
+    session.drafts.set_camera(session.view.unseen(seen, camera))
 
 
 def _dragged(button: int) -> bool:

@@ -16,7 +16,8 @@ from playground.studio.code.panel import draw_code, draw_questions
 from playground.studio.code.unsaved_texts import KeptTexts
 from playground.studio.drops import Drops
 from playground.studio.interface import Preferences, WindowControls
-from playground.studio.keys import act_on_keys, draw_keymap
+from playground.studio.keymap_panel import draw_keymap
+from playground.studio.keys import act_on_keys
 from playground.studio.overlay import draw_drops, draw_inspection
 from playground.studio.panel.panel import Panel
 from playground.studio.panes import PaneLayout, draw_pane

@@ -10,6 +10,7 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.sketch.assign import values_of
+from playground.sketch.model import Camera
 from playground.studio import focus
 from playground.studio.code.panel import draw_code, draw_questions, typing
 from playground.studio.graph.panel import passes_tab
@@ -18,7 +19,8 @@ from playground.studio.panes import draw_pane
 from playground.studio.theme import Theme
 
 from ..sketch_texts import map_of, passes
-from .panel_desk import Bare
+from .panel_desk import Bare, OpenBare
+from .screen import HILLS
 
 K = imgui.Key
 TERRAIN = """// terrain.glsl -- hills
@@ -192,3 +194,32 @@ def test_the_graph_and_the_focus_share_no_keys(desk: Desk) -> None:
     desk.key(K.escape)
     assert not desk.bench.inspection.graph.has_keys
     assert desk.tab() != [""]
+
+
+def test_arrows_steer_the_picture(open_bare: OpenBare, tmp_path: Path) -> None:
+    (tmp_path / "sketch.toml").write_text(HILLS, encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
+    bare = open_bare(tmp_path)
+
+    def camera() -> Camera:
+        assert bare.session.sketch is not None
+        return bare.session.sketch.camera
+
+    first = camera()
+    bare.key(K.right_arrow)
+    turned = camera()
+    assert turned.azimuth != first.azimuth and turned.elevation == first.elevation
+    bare.key(K.left_arrow)
+    assert camera().azimuth == pytest.approx(first.azimuth)
+    bare.key(K.mod_shift, K.up_arrow)
+    assert camera().azimuth == pytest.approx(first.azimuth) and camera() != first
+    bare.key(K.r)
+    bare.type("+")
+    nearer = camera().distance
+    bare.type("--")
+    assert nearer is not None and camera().distance is not None and nearer < camera().distance  # type: ignore[operator]
+    bare.key(K.r)
+    bare.key(K.tab)
+    bare.run_frames(2)
+    bare.key(K.down_arrow)
+    assert camera() == first and focus.is_shown(), "while a control has the focus they are the pane's"

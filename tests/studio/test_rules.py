@@ -19,6 +19,7 @@ WINDOW = {
     "focus",
     "guard",
     "key_queue",
+    "keymap_panel",
     "keys",
     "mouse",
     "overlay",

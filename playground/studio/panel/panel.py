@@ -87,7 +87,7 @@ class Panel:
             ImVec2(min(240 * look.scale, widest), room.y), ImVec2(min(620 * look.scale, widest), room.y)
         )
         imgui.begin("panel", None, SIDE_PANEL)
-        if bench.interface.searching:
+        if bench.interface.searching and not bench.interface.keymap_shown:
             bench.interface.searching, self.memory.focus_search = False, True
             await_field(bench.interface.ahead)
         draw_head(self.memory, bench, look)
