@@ -1,0 +1,129 @@
+"""A whole round of the window by the keyboard alone: no mouse is moved, no button of one pressed."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from playground.paths import NAME
+
+from .screen import LIMIT, ON_LINUX, Program, Screen
+
+pytestmark = [*ON_LINUX, pytest.mark.slow]
+SCREEN = 1280, 720
+
+# The window, with the label of the control that shows the focus in a file.
+RUN = """
+import sys
+from pathlib import Path
+from imgui_bundle import imgui
+from playground.studio import focus
+from playground.studio.app import run
+def noting(draw):
+    def noted(label, *rest):
+        answer = draw(label, *rest)
+        if focus.is_shown() and imgui.get_item_id() == imgui.get_current_context().nav_id:
+            Path("focus.txt").write_text(label, encoding="utf-8")
+        return answer
+    return noted
+for name in ("button", "small_button", "checkbox", "begin_combo", "slider_float", "slider_int",
+             "collapsing_header", "radio_button", "invisible_button", "input_text_with_hint",
+             "begin_tab_item", "menu_item_simple", "selectable", "text_link", "tree_node_ex"):
+    setattr(imgui, name, noting(getattr(imgui, name)))
+sys.exit(run("", size=(1280, 720), start_page=True, time_limit=600))
+"""
+
+
+class Keyboard(Program):
+    """The window, and what a person does who has no mouse."""
+
+    def __init__(self, screen: Screen, folder: Path) -> None:
+        self.folder = folder / "work"
+        self.folder.mkdir()
+        command = [sys.executable, "-c", RUN]
+        super().__init__(screen, folder, command, self.folder, code=True, strip=True)
+        self.wait(lambda now: "start page" in now["layers"] and now["takes_text"])
+
+    def press(self, *keys: str) -> None:
+        for key in keys:
+            self.screen.do("key", key)
+
+    def focused(self) -> str:
+        file = self.folder / "focus.txt"
+        return file.read_text("utf-8") if file.exists() else ""
+
+    def walk(self, to: str, key: str = "Tab") -> None:
+        """Press a key until a control whose label has these letters shows the focus."""
+        for _ in range(60):
+            (self.folder / "focus.txt").unlink(missing_ok=True)
+            self.press(key)
+            end = time.monotonic() + 1.5
+            while not self.focused() and time.monotonic() < end:
+                time.sleep(0.02)
+            time.sleep(0.05)
+            if to in self.focused():
+                return
+        pytest.fail(f"{key} never comes to {to}; {self.now()}")
+
+    def remembered(self, name: str) -> object:
+        file = self.folder.parent / "state" / NAME / "interface.json"
+        return json.loads(file.read_text("utf-8")).get(name)
+
+
+@pytest.fixture
+def window(screen: Screen, tmp_path: Path) -> Iterator[Keyboard]:
+    made = Keyboard(screen, tmp_path)
+    screen.do("mousemove", SCREEN[0] - 1, SCREEN[1] - 1)  # it stays in the corner
+    yield made
+    made.close()
+
+
+def test_a_whole_round_without_a_mouse(window: Keyboard) -> None:
+    window.walk("###new")
+    window.press("space", "Down")
+    window.press("Return")
+    now = window.wait(lambda now: now["draws"] > 0 and "start page" not in now["layers"])
+    assert (window.folder / "my-land" / "sketch.toml").is_file(), now
+
+    first = now["picture"]
+    window.walk("##colour.strength")
+    window.press("space", "Right", "Right", "Right", "space")
+    edited = window.wait(lambda now: now["edited"] and now["picture"] != first)["edited"]
+    assert all(path == "colour.strength" for path in edited)
+    window.press("Escape", "ctrl+z")
+    window.wait(lambda now: not now["edited"])
+
+    window.press("ctrl+e", "ctrl+e")
+    window.wait(lambda now: now["typing"])
+    window.screen.do("type", "--delay", 60, "# mine\n")
+    window.wait(lambda now: now["unsaved"])
+    window.press("ctrl+s")
+    window.wait(lambda now: not now["unsaved"])
+
+    window.press("ctrl+Tab")
+    window.walk("###versions", "Right")
+    window.press("space")
+    window.walk("version ")
+    window.press("space")
+    window.wait(lambda now: now["looked"])
+    window.press("Escape", "Escape")
+    window.wait(lambda now: not now["looked"])
+
+    window.press("F10")
+    window.walk("###language fr")
+    window.press("space")
+    end = time.monotonic() + LIMIT
+    while window.remembered("language") != "fr" and time.monotonic() < end:
+        time.sleep(0.05)
+    assert window.remembered("language") == "fr"
+    window.press("Escape")
+    window.wait(lambda now: "popup" not in now["layers"])
+    window.press("Escape", "o")
+    window.wait(lambda now: "start page" in now["layers"])
+    window.press("ctrl+q")
+    assert window.ended() == 0, window.complaint()
