@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SIZES = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
 """What the keys go through; 1 is as large as the screen says."""
 
-HINTS = {"O": "new, open, examples", "Ctrl+E": "code beside the picture", "?": "all keys"}
+HINTS = {"?": "all keys", "O": "new, open, examples", "Ctrl+E": "code beside the picture"}
 """What the line at the picture's bottom names until one has used it, key → what for."""
 
 FORMAT = 1

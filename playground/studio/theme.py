@@ -21,8 +21,9 @@ Rgb = tuple[float, float, float]
 class Palette:
     """The colours of the interface.
 
-    ``ink``, ``dim``, ``accent``, ``warm`` and ``alarm`` write on ``ground``, ``popup`` and ``field`` with a
-    contrast of 4.5 : 1 at least (WCAG 2.2, 1.4.3).
+    ``ink``, ``dim``, ``accent``, ``warm`` and ``alarm`` write on ``ground``, ``popup``, ``field``, ``raised``
+    and what is under mistakes with a contrast of 4.5 : 1 at least (WCAG 2.2, 1.4.3); ``line``, ``knob`` and
+    ``series`` stand out by 3 : 1 (1.4.11). What a colour means is said by a sign or a word as well.
     """
 
     is_light: bool
@@ -36,28 +37,60 @@ class Palette:
     field: Rgb
     raised: Rgb
     line: Rgb
-    grab: Rgb  # the knob of a slider, a button that stands out
+    grab: Rgb  # a button that stands out
+    knob: Rgb  # of a slider
     hover: Rgb
     pressed: Rgb
     surround: Rgb  # what is around the picture
+    wrong: Rgb  # under errors
+    mild: Rgb  # under warnings alone
+    not_finite: Rgb
+    channels: tuple[Rgb, Rgb, Rgb, Rgb]  # the curves of red, green, blue and alpha
+    series: tuple[Rgb, ...]  # the curves of a plot
 
+
+# Okabe and Ito 2008, "Color Universal Design", without black; on light ground the same hues, darker.
+_SERIES = (
+    (0.90, 0.62, 0.00),
+    (0.34, 0.71, 0.91),
+    (0.00, 0.62, 0.45),
+    (0.94, 0.89, 0.26),
+    (0.10, 0.50, 0.78),
+    (0.84, 0.37, 0.00),
+    (0.80, 0.47, 0.65),
+)
+_DARK_SERIES = (
+    (0.62, 0.40, 0.00),
+    (0.10, 0.45, 0.66),
+    (0.00, 0.46, 0.33),
+    (0.47, 0.43, 0.00),
+    (0.00, 0.32, 0.56),
+    (0.70, 0.27, 0.00),
+    (0.60, 0.27, 0.46),
+)
 
 DARK = Palette(
     is_light=False,
     accent=(0.47, 0.71, 0.47),
     warm=(0.93, 0.72, 0.38),
     alarm=(0.98, 0.52, 0.45),
-    dim=(0.60, 0.64, 0.66),
+    dim=(0.63, 0.67, 0.69),
     ink=(0.88, 0.90, 0.92),
     ground=(0.098, 0.106, 0.114),
     popup=(0.125, 0.135, 0.145),
     field=(0.165, 0.178, 0.190),
     raised=(0.215, 0.232, 0.247),
-    line=(0.30, 0.32, 0.34),
-    grab=(0.29, 0.46, 0.32),
+    line=(0.46, 0.48, 0.50),
+    grab=(0.26, 0.42, 0.29),
+    knob=(0.37, 0.60, 0.41),
     hover=(0.288, 0.30, 0.309),
     pressed=(0.269, 0.28, 0.288),
     surround=(0.06, 0.065, 0.07),
+    wrong=(0.17, 0.075, 0.075),
+    mild=(0.125, 0.118, 0.095),
+    not_finite=(1.0, 0.42, 1.0),
+    channels=((0.95, 0.42, 0.38), (0.45, 0.80, 0.45), (0.45, 0.62, 0.98), (0.75, 0.75, 0.75)),
+    series=_SERIES,
 )
 LIGHT = Palette(
     is_light=True,
@@ -70,11 +103,17 @@ LIGHT = Palette(
     popup=(0.985, 0.988, 0.990),
     field=(0.885, 0.893, 0.900),
     raised=(0.830, 0.842, 0.852),
-    line=(0.70, 0.72, 0.74),
+    line=(0.48, 0.50, 0.52),
     grab=(0.45, 0.68, 0.47),
+    knob=(0.22, 0.50, 0.26),
     hover=(0.76, 0.775, 0.788),
     pressed=(0.70, 0.72, 0.735),
     surround=(0.90, 0.905, 0.91),
+    wrong=(0.995, 0.930, 0.925),
+    mild=(0.985, 0.970, 0.930),
+    not_finite=(0.62, 0.0, 0.62),
+    channels=((0.70, 0.12, 0.10), (0.05, 0.42, 0.10), (0.12, 0.27, 0.75), (0.36, 0.36, 0.36)),
+    series=_DARK_SERIES,
 )
 
 palette = DARK
@@ -160,6 +199,8 @@ def _style(scale: float) -> imgui.Style:
     style.window_border_size = 0
     style.popup_border_size = 1
     style.separator_text_border_size = 1
+    style.frame_border_size = 1
+    style.disabled_alpha = 0.7
     style.separator_text_padding = ImVec2(0, 4)
     for name, value in _colours().items():
         style.set_color_(getattr(imgui.Col_, name), value)
@@ -196,15 +237,15 @@ def _colours() -> dict[str, ImVec4]:
         "title_bg_collapsed": colour(now.ground),
         "menu_bar_bg": colour(now.ground),
         "scrollbar_bg": colour(now.ground, 0.0),
-        "scrollbar_grab": colour(now.hover),
-        "scrollbar_grab_hovered": colour(now.line),
-        "scrollbar_grab_active": colour(now.dim),
+        "scrollbar_grab": colour(now.line),
+        "scrollbar_grab_hovered": colour(now.dim),
+        "scrollbar_grab_active": colour(now.accent),
         "check_mark": colour(now.accent),
-        "slider_grab": colour(now.grab),
+        "slider_grab": colour(now.knob),
         "slider_grab_active": colour(now.accent),
         "button": colour(now.raised),
         "button_hovered": colour(now.hover),
-        "button_active": colour(now.grab),
+        "button_active": colour(now.pressed),
         "header": colour(now.field),
         "header_hovered": colour(now.raised),
         "header_active": colour(now.pressed),
@@ -225,6 +266,9 @@ def _colours() -> dict[str, ImVec4]:
         "docking_empty_bg": colour(now.surround),
         "text_selected_bg": colour(now.accent, 0.35),
         "nav_cursor": colour(now.accent),
+        "text_link": colour(now.accent),
+        "checkbox_selected_bg": colour(now.field),
+        "drag_drop_target": colour(now.accent),
         "plot_lines": colour(now.ink),
         "plot_histogram": colour(now.accent),
         "table_header_bg": colour(now.field),

@@ -488,16 +488,6 @@ CONTROLS: dict[str, Draw] = {
 # ── plots ─────────────────────────────────────────────────────────────────────
 
 
-# Okabe and Ito 2008, "Color Universal Design", without black.
-PLOT_COLOURS = (
-    (0.90, 0.62, 0.00),
-    (0.34, 0.71, 0.91),
-    (0.00, 0.62, 0.45),
-    (0.94, 0.89, 0.26),
-    (0.00, 0.45, 0.70),
-    (0.84, 0.37, 0.00),
-    (0.80, 0.47, 0.65),
-)
 _LOOKED_AT = (
     implot.Flags_.no_menus.value | implot.Flags_.no_box_select.value | implot.Flags_.no_mouse_text.value
 )
@@ -517,9 +507,15 @@ def plot(name: str, size: ImVec2, flags: int) -> Iterator[bool]:
     implot.pop_style_var()
 
 
+def series(number: int) -> theme.Rgb:
+    """Return the colour of the curve of that number."""
+    colours = theme.palette.series
+    return colours[number % len(colours)]
+
+
 def plot_line(number: int, weight: float = 1.5) -> implot.Spec:
     """Return how the line of that number is drawn."""
     spec = implot.Spec()
-    spec.line_color = ImVec4(*PLOT_COLOURS[number % len(PLOT_COLOURS)], 1.0)
+    spec.line_color = ImVec4(*series(number), 1.0)
     spec.line_weight = weight
     return spec

@@ -116,7 +116,7 @@ def test_buttons_and_keys(bare: Bare) -> None:
     clock = bare.session.clock
     bare.click("Pause")
     assert not clock.playing
-    bare.click("Loop")
+    bare.click("○ Loop###loop")
     assert clock.loop == (1.0, 3.0)
     bare.click(">")
     assert clock.time == pytest.approx(1 / 30)

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from imgui_bundle import imgui
 
+from playground.errors import Diagnostic
 from playground.shader.colours import srgb_to_linear
 from playground.studio import language, theme
 from playground.studio.draw import Area
@@ -20,12 +21,15 @@ from playground.studio.language import choose_language
 from playground.studio.panes import NARROW, PaneLayout
 from playground.studio.settings_panel import draw_hints
 
-from .panel_desk import OpenBare
+from ..sketch_texts import map_of, passes
+from .panel_desk import OpenBare, errors_of
 from .screen import HILLS
 
 FILES = {"sketch.toml": HILLS, "terrain.glsl": "float kernel(vec2 p) { return 0.5; }\n"}
 WRITES = ("ink", "dim", "accent", "warm", "alarm")
-GROUNDS = ("ground", "popup", "field")
+GROUNDS = ("ground", "popup", "field", "raised", "wrong", "mild")
+PLATE = 0.92
+"""How opaque what is written over the picture is at least."""
 
 
 def luminance(rgb: theme.Rgb) -> float:
@@ -43,7 +47,45 @@ def test_text_has_a_contrast_of_4_5(palette: theme.Palette) -> None:
         if (contrast := contrast_of(getattr(palette, ink), getattr(palette, ground))) < 4.5
     }
     assert low == {}
-    assert contrast_of(palette.ink, palette.raised) >= 4.5, "what buttons say"
+    for state in ("hover", "pressed", "grab"):
+        assert contrast_of(palette.ink, getattr(palette, state)) >= 4.5, f"a button: {state}"
+    for rgb in palette.channels:
+        assert contrast_of(rgb, palette.ground) >= 4.5 and contrast_of(rgb, palette.popup) >= 4.5
+    assert contrast_of(palette.not_finite, palette.ground) >= 4.5
+
+
+@pytest.mark.parametrize("palette", [theme.DARK, theme.LIGHT], ids=["dark", "light"])
+def test_words_over_any_picture_can_be_read(palette: theme.Palette) -> None:
+    """The worst picture is white under a dark plate, black under a light one."""
+    picture = (0.0, 0.0, 0.0) if palette.is_light else (1.0, 1.0, 1.0)
+    plate = mixed(palette.ground, picture, PLATE)
+    assert min(contrast_of(getattr(palette, ink), plate) for ink in WRITES) >= 4.5
+
+
+@pytest.mark.parametrize("palette", [theme.DARK, theme.LIGHT], ids=["dark", "light"])
+def test_controls_and_curves_have_a_contrast_of_3(palette: theme.Palette) -> None:
+    """Criterion 1.4.11: edges of boxes, knobs, the frame of the focus, curves of plots."""
+    for ground in ("ground", "popup", "field"):
+        assert contrast_of(palette.line, getattr(palette, ground)) >= 3.0, ground
+    for rgb in palette.series:
+        assert contrast_of(rgb, palette.ground) >= 3.0, rgb
+    assert contrast_of(palette.knob, palette.field) >= 3.0
+    for ground in ("ground", "popup", "field", "raised", "hover", "pressed"):
+        assert contrast_of(palette.accent, getattr(palette, ground)) >= 3.0, "the focus"
+
+
+@pytest.mark.parametrize("palette", [theme.DARK, theme.LIGHT], ids=["dark", "light"])
+def test_what_cannot_be_used_can_be_read(open_bare: OpenBare, folder: Path, palette: theme.Palette) -> None:
+    """Though WCAG asks nothing of it: a button whose colours are thinned as imgui does."""
+    open_bare(folder).theme.choose(palette)
+    alpha = imgui.get_style().disabled_alpha
+    button = mixed(palette.raised, palette.ground, alpha)
+    assert contrast_of(mixed(palette.ink, button, alpha), button) >= 4.5
+
+
+def mixed(over: theme.Rgb, under: theme.Rgb, alpha: float) -> theme.Rgb:
+    red, green, blue = (a * alpha + b * (1 - alpha) for a, b in zip(over, under, strict=True))
+    return red, green, blue
 
 
 def contrast_of(one: theme.Rgb, other: theme.Rgb) -> float:
@@ -176,3 +218,45 @@ def test_hints_go_one_by_one_and_all_at_once(open_bare: OpenBare, folder: Path) 
             bare.key(*((imgui.Key.mod_ctrl, imgui.Key.e) if key == "Ctrl+E" else (imgui.Key.o,)))
         assert key in preferences.used_keys
     assert not frame(wide), "all were used"
+
+
+# ── signs besides colours ─────────────────────────────────────────────────────
+
+
+def test_a_pass_that_ran_has_a_sign_besides_its_colour(
+    open_bare: OpenBare, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kernel = '#pragma kernel(output = "height:r32f")\nuniform float level = 0.5;  //! slider(0, 1)\n'
+    (folder / "terrain.glsl").write_text(f"{kernel}float kernel(ivec2 texel) {{ return level; }}\n")
+    sketch = "format = 1\nsize = 33\n" + passes(height="./terrain") + map_of("height")
+    (folder / "sketch.toml").write_text(sketch, encoding="utf-8")
+    bare = open_bare(folder)
+    written: list[str] = []
+    monkeypatch.setattr(imgui, "text_colored", lambda _, text: written.append(text))
+    bare.bench.inspection.costs_asked = True
+    bare.run_frames(2)
+
+    bare.session.drafts.set("view.lowest", -1.0)
+    written.clear()
+    bare.run_frames(1)
+    named = {text for text in written if text.removeprefix("• ") in ("height", "view")}
+    assert named == {"height", "• view"}, "only the view was drawn anew"
+
+
+def test_a_warning_and_an_error_differ_in_words(open_bare: OpenBare, folder: Path) -> None:
+    bare = open_bare(folder)
+    bare.watch(imgui, "input_text_multiline")
+    texts: list[str] = []
+    field = imgui.input_text_multiline
+    imgui.input_text_multiline = lambda label, text, *rest: (texts.append(text), field(label, text, *rest))[1]
+    try:
+        problems = bare.bench.problems
+        problems.errors = (Diagnostic("no such name"),)
+        problems.warnings = (Diagnostic("never read", severity="warning"),)
+        problems.open = True
+        bare.run_frames(
+            1, around=lambda draw: errors_of(bare.bench).draw(bare.theme, (330.0, 0.0, 600.0, 700.0))
+        )
+    finally:
+        imgui.input_text_multiline = field
+    assert texts[0] == "no such name" and "warning: never read" in texts

@@ -23,7 +23,7 @@ from playground.studio.interface import Interface
 from playground.studio.language import tr
 from playground.studio.session import Session
 from playground.studio.theme import Theme
-from playground.studio.widgets import PLOT_COLOURS, plot, plot_line
+from playground.studio.widgets import plot, plot_line, series
 
 _READOUT = OVERLAY | imgui.WindowFlags_.no_bring_to_front_on_focus
 _MAX_ROWS = 6  # passes with a line of their own
@@ -54,7 +54,7 @@ def draw_readout(
             imgui.StyleVar_.window_border_size: 0.0,
         }
         padding = ImVec2(imgui.get_style().window_padding.x, imgui.get_style().window_padding.y)
-        ground = theme.colour(theme.palette.ground, 0.8)
+        ground = theme.colour(theme.palette.ground, 0.92)
         with window("readout", _READOUT, ground=ground, rounding=5 * look.scale, sizes=sizes):
             corner = imgui.get_cursor_screen_pos()
             if imgui.invisible_button("readout", ImVec2(wide, high), imgui.ButtonFlags_.enable_nav):
@@ -106,7 +106,8 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
 
     def name(path: str) -> None:
         ran = path in engine.record.ran
-        imgui.text_colored(theme.colour(theme.palette.accent if ran else theme.palette.ink), path)
+        rgb, sign = (theme.palette.accent, "• ") if ran else (theme.palette.ink, "")
+        imgui.text_colored(theme.colour(rgb), f"{sign}{path}")
         if why := inspection.reasons.text(path):
             imgui.set_item_tooltip(why)
 
@@ -156,7 +157,7 @@ def _plots(record: Record, look: Theme) -> None:
         spent = record.passes[path]
         corner = imgui.get_cursor_screen_pos()
         top = corner.y + (imgui.get_font_size() - side) / 2
-        colour = theme.packed(PLOT_COLOURS[number % len(PLOT_COLOURS)])
+        colour = theme.packed(series(number))
         draw.add_rect_filled(ImVec2(corner.x, top), ImVec2(corner.x + side, top + side), colour, 2)
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 2 * side)
         text = tr(

@@ -510,7 +510,7 @@ class GraphPanel:
         use = spec.use.rpartition("/")[2] if spec is not None else node.name.rpartition(".")[0]
         runs, ran, spent = cost_of(self._bench.session, node.name)
         cost = runs if spent is None else f"{spent:.2f} ms" if spent < 10 else f"{spent:.0f} ms"
-        cost = tr("muted") if node.is_muted else cost
+        cost = tr("muted") if node.is_muted else f"• {cost}" if ran else cost
         ink = palette.accent if ran and not node.is_muted else palette.dim
         rows = [(node.name.rpartition(".")[2], look.bold, 14.0, palette.ink, 5.0)]
         rows += [] if has_buttons else [(use, look.text, 12.0, palette.dim, 24.0)]

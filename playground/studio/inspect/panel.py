@@ -22,7 +22,6 @@ from playground.studio.widgets import plot, plot_line
 
 _HIGH = 120.0
 _CHANNELS = ("red", "green", "blue", "alpha")
-_INKS = ((0.95, 0.42, 0.38), (0.45, 0.80, 0.45), (0.45, 0.62, 0.98), (0.75, 0.75, 0.75))
 _SHARE = 0.02
 
 
@@ -116,7 +115,7 @@ def _plot(histogram: Histogram, shown: Map, inspection: Inspection, look: Theme)
         for number, channel in enumerate(histogram.channels):
             spec = implot.Spec()
             alone = len(histogram.channels) == 1
-            ink = ImVec4(*(theme.palette.ink if alone else _INKS[number]), 1.0)
+            ink = ImVec4(*(theme.palette.ink if alone else theme.palette.channels[number]), 1.0)
             spec.line_color, spec.fill_color, spec.fill_alpha = ink, ink, 0.25
             heights = np.maximum(channel.bins.astype(np.float64), floor)
             implot.plot_stairs(f"{tr(_CHANNELS[number])}##{number}", edges, heights, spec)
@@ -134,7 +133,7 @@ def _table(document: Histogram) -> None:
     for number, channel in enumerate(document.channels):
         imgui.table_next_row()
         imgui.table_next_column()
-        imgui.text_colored(theme.colour(_INKS[number]), tr(_CHANNELS[number]))
+        imgui.text_colored(theme.colour(theme.palette.channels[number]), tr(_CHANNELS[number]))
         for value in (channel.lowest, channel.highest, channel.mean, channel.deviation):
             imgui.table_next_column()
             imgui.text_unformatted(tr("none") if math.isnan(value) else f"{value:.4g}")

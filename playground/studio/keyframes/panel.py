@@ -126,7 +126,7 @@ def draw_timeline(undo: Undo, interface: Interface, look: Theme, area: Area) -> 
     flags = QUIET | imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move
     flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_bring_to_front_on_focus
     padding = {imgui.StyleVar_.window_padding: ImVec2(10 * look.scale, 8 * look.scale)}
-    with window("timeline", flags, ground=theme.colour(theme.palette.ground, 0.82), sizes=padding):
+    with window("timeline", flags, ground=theme.colour(theme.palette.ground, 0.92), sizes=padding):
         _controls(undo, look)
         imgui.same_line(0, 10 * look.scale)
         _bar(sketch, undo, look)
@@ -145,7 +145,7 @@ def _controls(undo: Undo, look: Theme) -> None:
         undo.seek(0.0)
     imgui.same_line(0, gap)
     with styled({imgui.Col_.button: theme.colour(theme.palette.accent, 0.5)} if clock.loop else {}):
-        if button(tr("Loop")):
+        if button(f"{'●' if clock.loop else '○'} {tr('Loop')}###loop"):
             undo.toggle_loop()
     imgui.set_item_tooltip(tr("Repeat a span of time (L); Shift+drag on the bar chooses from when to when"))
     imgui.same_line(0, gap)

@@ -347,6 +347,7 @@ class _Drawing:
         text, ran, spent = cost_of(session, spec.name)
         if session.engine.options.profiling and spent is not None:
             text = f"{spent:.1f} ms    {text}"
+        text = f"• {text}" if ran else text
         size = imgui.calc_text_size(text)
         right = high.x - slot() - 8 * look.scale
         position = ImVec2(right - size.x, (low.y + high.y - size.y) / 2)
@@ -355,7 +356,7 @@ class _Drawing:
         )
         if imgui.is_item_hovered():
             lines = [tr("pass {name}", name=spec.name)]
-            lines += [tr("How often its kernels ran; green: for this very picture")]
+            lines += [tr("How often its kernels ran; • and green: for this very picture")]
             lines += [self.reasons.text(spec.name), tr("Right click: its files")]
             imgui.set_tooltip("\n".join(filter(None, lines)))
         _files(spec, self.files)

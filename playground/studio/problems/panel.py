@@ -73,8 +73,6 @@ def short_place(location: str, folder: str) -> str:
 MAX_ROWS = 60
 """Diagnostics drawn at most."""
 _MAX_HEIGHT = 0.5  # fraction of the picture that the list may cover
-_GROUND = {False: (0.17, 0.075, 0.075), True: (0.995, 0.930, 0.925)}  # under errors, dark and light
-_MILD = {False: (0.125, 0.118, 0.095), True: (0.985, 0.970, 0.930)}  # under warnings alone
 _FLAGS = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize
 _FLAGS |= imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_focus_on_appearing
 _FLAGS |= imgui.WindowFlags_.no_bring_to_front_on_focus
@@ -113,8 +111,8 @@ class ErrorsList:
         margin = 14 * look.scale
         position = ImVec2(area[0] + margin, area[1] + area[3] - margin)
         imgui.set_next_window_pos(position, imgui.Cond_.always, ImVec2(0, 1))
-        grounds = _GROUND if self.problems.errors else _MILD
-        ground = theme.colour(grounds[theme.palette.is_light], 0.95)
+        rgb = theme.palette.wrong if self.problems.errors else theme.palette.mild
+        ground = theme.colour(rgb, 0.95)
         named = {getattr(imgui.StyleVar_, key): value for key, value in sizes.items()}
         return window(name, _FLAGS, ground=ground, rounding=8 * look.scale, sizes=named)
 
@@ -219,9 +217,10 @@ class ErrorsList:
         imgui.begin_group()
         self._links(diagnostic, look)
         is_error = diagnostic.severity == "error"
+        message = diagnostic.message
         _text(
             "message",
-            diagnostic.message,
+            message if is_error else tr("warning: {message}", message=message),
             theme.palette.ink if is_error else theme.palette.warm,
             look,
             wrap=True,
@@ -313,7 +312,7 @@ def _text(label: str, text: str, rgb: theme.Rgb, look: Theme, *, wrap: bool = Fa
         imgui.input_text_multiline(f"##{label}", text, ImVec2(wide, size.y + 2), flags)
 
 
-_MAGENTA = (1.0, 0.42, 1.0)  # readable on dark ground; the texels themselves are as the map has them
+_MAGENTA = (1.0, 0.42, 1.0)  # over a black ring: the texels themselves are as the map has them
 _RING = 14.0  # [units of scale 1] radius of the mark around the first texel
 
 
@@ -351,7 +350,7 @@ def draw_not_finite(watch: FiniteWatch, session: Session, tracing: Tracing, look
     ground = theme.colour(theme.palette.ground, 0.92)
     with window("not finite", OVERLAY, ground=ground, rounding=6 * look.scale):
         with wrapped(widest - 2 * imgui.get_style().window_padding.x):
-            imgui.text_colored(theme.colour(_MAGENTA), summary(watch.non_finite))
+            imgui.text_colored(theme.colour(theme.palette.not_finite), summary(watch.non_finite))
         imgui.set_item_tooltip("\n".join(map(str, watch.non_finite)))
         if shows:
             if button(tr("Back to the picture"), small=True):
