@@ -721,3 +721,17 @@ def test_the_eye_never_goes_over_the_top() -> None:
 def test_a_mouse_that_only_passes_does_nothing() -> None:
     assert not Gesture(480, across=10, down=3).acts
     assert steered(CAMERA, EYE, Gesture(480, across=10)) == CAMERA
+
+
+def test_a_low_panel_scrolls_with_its_head(open_bare: OpenBare, folder: Path) -> None:
+    for size, scale in (((1280, 720), 2.0), ((1280, 720), 1.0)):
+        bare = open_bare(folder, size, scale)
+        imgui.get_io().add_mouse_pos_event(100, 600)
+        bare.run_frames(3)
+        rows = next(w for w in imgui.get_current_context().windows if w.name.startswith("panel/sections"))
+        top = bare.places["History"][1]
+        for _ in range(4):
+            imgui.get_io().add_mouse_wheel_event(0, -1)
+            bare.run_frames(5)
+        assert rows.scroll.y > 0 and rows.size.y > 300
+        assert (bare.places["History"][1] < top) == (scale == 2.0)

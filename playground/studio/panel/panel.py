@@ -61,6 +61,9 @@ from playground.studio.settings_panel import draw_settings, settings_label
 from playground.studio.theme import Theme
 from playground.studio.widgets import WidgetSlot, draw_value, explanation, slide
 
+_LOW = 400.0
+"""[units of scale 1] of a window's height below which the head scrolls with the rest."""
+
 
 @dataclass
 class Panel:
@@ -90,15 +93,15 @@ class Panel:
         if bench.interface.searching and not bench.interface.keymap_shown:
             bench.interface.searching, self.memory.focus_search = False, True
             await_field(bench.interface.ahead)
-        draw_head(self.memory, bench, look)
-        sketch = bench.session.sketch
-        if sketch is not None:
-            draw_paintbox(bench.painting)
-            draw_search(self.memory, bench.interface.ahead)
-        footer = _footer_lines(bench.session.orbits, look)
+        sketch, footer = bench.session.sketch, _footer_lines(bench.session.orbits, look)
+        scrolls_whole = room.y < _LOW * look.scale
+        if not scrolls_whole:
+            self._draw_head(bench, look)
         bar = imgui.WindowFlags_.always_vertical_scrollbar if sketch is not None else 0
-        size, flat = ImVec2(0, -_footer_height(footer, look)), imgui.ChildFlags_.nav_flattened
-        imgui.begin_child("sections", size, flat, bar)
+        below = 0.0 if scrolls_whole else -_footer_height(footer, look)
+        imgui.begin_child("sections", ImVec2(0, below), imgui.ChildFlags_.nav_flattened, bar)
+        if scrolls_whole:
+            self._draw_head(bench, look)
         if bench.inspection.costs_asked:
             self.memory.filter = Filter()
         if sketch is not None:
@@ -108,13 +111,22 @@ class Panel:
             if not self.memory.filter:
                 self._keyframes.draw(bench.keyframes, look)
                 draw_costs(sketch, bench.session, bench.inspection, look)
+        if scrolls_whole:
+            _footer(footer, look)
         imgui.end_child()
-        _footer(footer, look)
+        if not scrolls_whole:
+            _footer(footer, look)
         width = imgui.get_window_size().x
         imgui.end()
         if abs(width - target) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
             self.width = width / look.scale
         return width
+
+    def _draw_head(self, bench: Workbench, look: Theme) -> None:
+        draw_head(self.memory, bench, look)
+        if bench.session.sketch is not None:
+            draw_paintbox(bench.painting)
+            draw_search(self.memory, bench.interface.ahead)
 
 
 def _map(session: Session, inspection: Inspection, look: Theme) -> None:
