@@ -308,7 +308,10 @@ def _text(label: str, text: str, rgb: theme.Rgb, look: Theme, *, wrap: bool = Fa
         imgui.Col_.text: theme.colour(rgb),
     }
     var = imgui.StyleVar_
-    with styled(colours, {var.frame_padding: ImVec2(0, 0), var.scrollbar_size: 4 * look.scale}):
+    with styled(
+        colours,
+        {var.frame_padding: ImVec2(0, 0), var.frame_border_size: 0.0, var.scrollbar_size: 4 * look.scale},
+    ):
         imgui.input_text_multiline(f"##{label}", text, ImVec2(wide, size.y + 2), flags)
 
 

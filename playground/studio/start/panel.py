@@ -48,7 +48,7 @@ class StartPanel:
         self._dialog: dialogs.open_file | None = None
         self._asks_for: Template | None = None  # what the dialog's file is for; None: to open
         self._typed = ""  # a path, where there are no dialogs
-        self._types = False
+        self._types = self._focus_path = False
         self._focus = True
 
     @property
@@ -106,9 +106,8 @@ class StartPanel:
         with menu(f"+ {tr('New')}###new", "new sketch", tr("A sketch of your own, in this folder")) as opened:
             if opened:
                 for template in TEMPLATES:
-                    if imgui.menu_item_simple(f"{tr(template.title)}##{template.key}"):
+                    if imgui.menu_item_simple(f"{tr(template.title)}##{template.key}", tr(template.note)):
                         self._begin(page, template)
-                    imgui.set_item_tooltip(tr(template.note))
         imgui.same_line()
         if button(f"{tr('Open…')}###open", tr("A sketch, a shader, an elevation file; or drop it here")):
             self._ask_for_file(None)
@@ -138,7 +137,7 @@ class StartPanel:
     def _ask_for_file(self, template: Template | None) -> None:
         self._asks_for = template
         if not has_file_dialogs():
-            self._types = True
+            self._types = self._focus_path = True
             return
         if self._dialog is None:
             kinds = {"elevation": ELEVATIONS, "shader": SHADERS}.get(template.key if template else "", ())
@@ -158,6 +157,9 @@ class StartPanel:
     def _draw_path_field(self, page: StartPage) -> None:
         """Draw a field for a path, where the system has no program for file dialogs."""
         imgui.set_next_item_width(-120 * imgui.get_style().font_scale_dpi)
+        if self._focus_path:
+            imgui.set_keyboard_focus_here()
+            self._focus_path = False
         enter = imgui.InputTextFlags_.enter_returns_true
         hint = tr("A file's path; dialogs need zenity or kdialog")
         entered, self._typed = imgui.input_text_with_hint("##path", hint, self._typed, enter)
