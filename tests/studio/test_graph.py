@@ -396,7 +396,6 @@ def test_a_wire_let_go_in_the_empty_asks_what_to_add(passes_bare: Bare) -> None:
     bare.press(False)
     assert graph.chooser.is_open and (graph.chooser.after, graph.chooser.output) == ("colour", "colour")
     bare.key(imgui.Key.escape)
-    bare.key(imgui.Key.escape)
     assert not graph.chooser.is_open and text_of(bare) == SKETCH
 
 
@@ -646,7 +645,6 @@ def test_wires_and_places_by_keys(chain: Bare) -> None:
     bare.key(key.insert)
     bare.run_frames(2)
     assert graph.chooser.is_open and graph.chooser.on is not None
-    bare.key(key.escape)  # leaves the field
     bare.key(key.escape)
     assert not graph.chooser.is_open and graph.has_keys
     bare.key(key.delete)

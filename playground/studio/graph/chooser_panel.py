@@ -47,6 +47,8 @@ def draw_chooser(bench: Workbench, wiring: Wiring, look: Theme) -> None:
     )
     if enters and entries:
         chosen = entries[chooser.marked]
+    if imgui.is_key_pressed(imgui.Key.escape, repeat=False):  # out of its search, and out of it
+        imgui.close_current_popup()
     if chosen is not None:
         imgui.close_current_popup()
         chooser.is_open = False
