@@ -237,7 +237,7 @@ class TerrainGroup:
         levels, values = level_items(draft), values_of(draft.sketch)
         for item in levels:
             value = values[item.leaf]
-            with _terrain_row(session, item.path, item.title, item.parameter.tooltip):
+            with _terrain_row(session, item.path, tr_label(item.title), item.parameter.tooltip):
                 if isinstance(value, int | float):
                     self._length(session, item.path, float(value), low=item.parameter.widget.low or -1e6)
         if not levels:
