@@ -99,11 +99,11 @@ class VersionsPanel:
         if self._typed_for != versions.selected:
             self._typed_for, self._typed = versions.selected, chosen.name if chosen is not None else ""
         imgui.set_next_item_width(_NAME_LETTERS * imgui.get_font_size())
-        if self._gets_keys:
-            imgui.set_keyboard_focus_here()
-            self._gets_keys = False
         enter = imgui.InputTextFlags_.enter_returns_true
         entered, self._typed = imgui.input_text_with_hint("##name", tr("name"), self._typed, enter)
+        if self._gets_keys:
+            imgui.internal.activate_item_by_id(imgui.get_item_id())
+            self._gets_keys = False
         imgui.same_line()
         if chosen is None:
             note = tr("Keep the present state under this name, for ever")
@@ -149,8 +149,8 @@ class VersionsPanel:
         versions = self.versions
         corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
         clicked = imgui.invisible_button(f"version {version.key}", size, imgui.ButtonFlags_.enable_nav)
-        hovered, focused = imgui.is_item_hovered(), imgui.is_item_focused()
-        lit = hovered or focused
+        hovered = imgui.is_item_hovered()
+        lit = hovered or imgui.is_item_focused()
         if imgui.is_item_active() and imgui.is_mouse_down(0):
             versions.hold(version)
         elif imgui.is_item_deactivated():
@@ -176,11 +176,6 @@ class VersionsPanel:
         if version.key == versions.selected or lit:
             wide = (2.5 if version.key == versions.selected else 1.0) * look.scale
             draw.add_rect(corner, far, theme.packed(theme.palette.accent), radius, wide)
-        if focused:  # the keys are its own
-            inner = 3 * look.scale
-            low_corner = ImVec2(corner.x + inner, corner.y + inner)
-            high_corner = ImVec2(far.x - inner, far.y - inner)
-            draw.add_rect(low_corner, high_corner, theme.packed(theme.palette.ink), radius, 1.5 * look.scale)
         now = f"{tr('now')} · " if version.key == versions.current else ""
         left, middle = corner.x + 5 * look.scale, low + _CAPTION * look.scale / 2
         if version.name:
