@@ -471,7 +471,8 @@ class Live:
             return
         room = imgui.get_main_viewport().size
         bench.take_notes()
-        area: Area = (0.0, 0.0, room.x, room.y)
+        below_head = 76 * window.theme.scale  # which has the page's buttons
+        area: Area = (0.0, below_head, room.x, room.y - below_head)
         guard.draw("the notices", lambda: draw_notices(bench.notices, window.theme, area), None)
         guard.draw("what was dropped", lambda: draw_drops(self.drops, window.theme), None)
         guard.run("showing the page", lambda: self._show(None, (0, 0, *window.pixels)), None)

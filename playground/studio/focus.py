@@ -80,6 +80,9 @@ def update(focus: KeyFocus, *, always: bool, barred: bool) -> None:
     context.config_nav_windowing_key_next = context.config_nav_windowing_key_prev = 0
     context.config_nav_enable_tabbing = not barred
     io.config_nav_escape_clear_focus_item = io.config_nav_capture_keyboard = False
+    if focus.was_always and not always:
+        hide()  # the start page has closed: the keys are the picture's
+    focus.was_always = always
     in_popup = len(context.open_popup_stack) > 0
     is_on = is_shown() or always or in_popup or io.want_text_input
     io.config_flags = (io.config_flags & ~_NAV) | (_NAV if is_on and not barred else 0)

@@ -184,6 +184,7 @@ class KeyFocus:
     firsts: dict[str, int] = field(default_factory=dict)  # pane → its first control
     lasts: dict[str, int] = field(default_factory=dict)  # pane → the control from which Tab left it
     popups: int = 0  # that were open at the end of the frame before
+    was_always: bool = False  # it was on without having been asked for, as on the start page
 
 
 @dataclass
