@@ -17,6 +17,8 @@ from imgui_bundle import imgui
 # isort: split
 import glfw
 
+from playground.studio import focus
+
 _MODIFIER_KEYS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 _MODIFIERS = (
     (glfw.MOD_SHIFT, imgui.Key.mod_shift, glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SHIFT),
@@ -73,7 +75,7 @@ class KeyQueue:
             self._rests = len(imgui.get_current_context().input_events_queue) > 0
             return
         io, letters = imgui.get_io(), 0
-        in_field = io.want_text_input
+        in_field = _is_typed()
         while self._waiting:
             first = self._waiting[0]
             if isinstance(first, str):
@@ -107,6 +109,13 @@ class KeyQueue:
             io.add_key_event(modifier, held)
         if press.action != glfw.REPEAT:
             io.add_key_event(_named(press.key, press.scan), is_down)
+
+
+def _is_typed() -> bool:
+    """Return whether letters go into a text; one that Tab has just left still claims them for a frame."""
+    context = imgui.get_current_context()
+    has_left = focus.is_shown() and context.active_id != context.input_text_state.id_
+    return bool(imgui.get_io().want_text_input and not has_left)
 
 
 def _named(key: int, scan: int) -> imgui.Key:
