@@ -28,7 +28,7 @@ def draw_keymap(interface: Interface, look: Theme) -> None:
     room, margin = imgui.get_main_viewport().size, 8 * look.scale
     wide = min(room.x - 2 * margin, _MOST * (_COLUMN + 40) * look.scale)
     imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.always, ImVec2(0.5, 0.5))
-    imgui.set_next_window_size(ImVec2(wide, min(room.y - 2 * margin, 680 * look.scale)))
+    imgui.set_next_window_size(ImVec2(wide, min(room.y - 2 * margin, 960 * look.scale)))
     ground = theme.colour(theme.palette.popup, 0.98)
     with window("keys", _FLAGS, ground=ground, rounding=8 * look.scale):
         if _draw_head(interface, look):

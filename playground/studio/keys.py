@@ -300,7 +300,7 @@ def act_on_keys(bench: Workbench) -> None:
             bench.start.close()
         return
     has_focus = focus.is_shown()
-    if bench.walk.on and not ctrl:
+    if bench.walk.on and not ctrl and not has_focus:
         down = [way for key, way in _WALK.items() if imgui.is_key_down(key)]
         bench.walk.head(sum(way[0] for way in down), sum(way[1] for way in down), fast=shift)
     typed = letters()
@@ -319,7 +319,7 @@ def act_on_keys(bench: Workbench) -> None:
         if pressed and not walks and (bench.painting.on or not key.brush):
             key.act(bench)
             bench.interface.preferences.use_key(key.name)
-    if not has_focus and not bench.interface.keymap_shown:
+    if not (has_focus or bench.interface.keymap_shown or (bench.walk.on and not ctrl)):
         _steer(bench, ctrl=ctrl, shift=shift)
 
 
@@ -388,7 +388,7 @@ STEERING_KEYS = (
 """What it does with the picture, while no control shows the focus."""
 
 _SUBJECTS = {
-    "Picture": ("R", "M", "A", "I", "T", "S", "C", "F4", "F11"),
+    "Picture": ("R", "M", "W", "A", "I", "T", "S", "C", "F4", "F11"),
     "Time": ("Space", ",", ".", "L", "0"),
     "Sketch and versions": (
         *("O", "Backspace, Shift+Backspace", "Ctrl+Z", "Ctrl+Shift+Z", "Ctrl+Y", "Ctrl+S", "Ctrl+V", "V"),

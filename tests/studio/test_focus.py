@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from playground.engine.engine import Engine
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
-from playground.studio import focus
+from playground.studio import focus, keys
 from playground.studio.code.panel import draw_code, draw_questions, typing
 from playground.studio.graph.panel import passes_tab
 from playground.studio.interface import Tab
@@ -223,3 +223,19 @@ def test_arrows_steer_the_picture(open_bare: OpenBare, tmp_path: Path) -> None:
     bare.run_frames(2)
     bare.key(K.down_arrow)
     assert camera() == first and focus.is_shown(), "while a control has the focus they are the pane's"
+
+
+def test_arrows_walk_where_one_walks(
+    open_bare: OpenBare, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "sketch.toml").write_text(HILLS, encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
+    bare = open_bare(tmp_path)
+    steered: list[object] = []
+    monkeypatch.setattr(keys, "steer", lambda _, gesture: steered.append(gesture))
+    bare.key(K.right_arrow)
+    assert len(steered) == 1
+    bare.bench.walk.toggle()
+    assert bare.bench.walk.on
+    bare.key(K.right_arrow)
+    assert len(steered) == 1, "they do not turn the terrain as well"
