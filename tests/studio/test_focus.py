@@ -239,3 +239,15 @@ def test_arrows_walk_where_one_walks(
     assert bare.bench.walk.on
     bare.key(K.right_arrow)
     assert len(steered) == 1, "they do not turn the terrain as well"
+
+
+def test_a_step_of_the_history_is_chosen_by_keys(desk: Desk) -> None:
+    desk.session.drafts.set("height.level", 0.75)
+    desk.run_frames(3)
+    desk.walk("History")
+    desk.key(K.space)
+    desk.run_frames(3)
+    desk.key(K.home)
+    desk.key(K.enter)
+    desk.run_frames(3)
+    assert desk.value("level") == 0.5

@@ -308,7 +308,8 @@ def draw_history(memory: PanelState, undo: Undo, look: Theme) -> None:
     room = imgui.get_main_viewport().size
     lines = min(len(history.steps) + 1, _LISTED)
     wide, high = min(300 * look.scale, room.x - 60), lines * imgui.get_frame_height() + 10
-    imgui.begin_child("steps", ImVec2(wide, min(high, room.y - 120)))
+    size = ImVec2(wide, min(high, room.y - 120))
+    imgui.begin_child("steps", size, imgui.ChildFlags_.nav_flattened)
     if imgui.selectable(
         tr("As it was opened") if len(history.steps) < 200 else tr("Before"), history.done == 0
     )[0]:

@@ -148,7 +148,9 @@ class ErrorsList:
             self._headline(look)
             room = tallest - imgui.get_cursor_pos_y() - imgui.get_style().window_padding.y
             imgui.set_next_window_size_constraints(ImVec2(0, 0), ImVec2(1e6, max(room, 40.0)))
-            imgui.begin_child("list", ImVec2(0, 0), imgui.ChildFlags_.auto_resize_y)
+            imgui.begin_child(
+                "list", ImVec2(0, 0), imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.nav_flattened
+            )
             number = 0
             for file, mine in problems.by_file():
                 if number < MAX_ROWS:
