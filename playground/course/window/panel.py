@@ -660,7 +660,7 @@ class LessonPanel:
             page = Page(reader, lesson, look, self._texts, self.memory, self._textures_of(reader), present)
             _head(page)
             scrolls = imgui.WindowFlags_.always_vertical_scrollbar
-            imgui.begin_child("page", ImVec2(0, -_foot_height()), 0, scrolls)
+            imgui.begin_child("page", ImVec2(0, -_foot_height()), imgui.ChildFlags_.nav_flattened, scrolls)
             if reader.to_top:
                 reader.to_top = False
                 imgui.set_scroll_y(0.0)

@@ -45,7 +45,7 @@ def _draw(tracing: Tracing, look: Theme) -> None:
                 tr("Every value of the texel under the mouse, behind the lines of the code that gave it")
             )
         return
-    imgui.begin_child("trace")
+    imgui.begin_child("trace", ImVec2(0, 0), imgui.ChildFlags_.nav_flattened)
     _head(tracing, look)
     _calls(tracing)
     _probe(tracing, look)
