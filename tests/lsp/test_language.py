@@ -93,7 +93,7 @@ def test_directives_and_annotations_are_completed(
 ) -> None:
     names = completed(editor, hill, f"// one line\n{line}\n{KERNEL}")
     assert names >= expected
-    assert "relief" not in names, "names of code do not belong here"
+    assert "base_elevation" not in names, "names of code do not belong here"
 
 
 def test_a_comment_is_not_completed(editor: Editor, hill: str) -> None:
