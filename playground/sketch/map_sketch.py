@@ -55,8 +55,7 @@ class Map:
             return _within(sketch, view, self)
         spec = PassSpec("view", USE, self.kernel, inputs=(("shown", self.ref),), values=self.values)
         passes = (*(p for p in sketch.graph.passes if p.name != "view"), spec)
-        overrides = tuple(v for v in sketch.overrides if not v[0].startswith("view."))
-        return replace(sketch, graph=replace(sketch.graph, passes=passes), overrides=overrides)
+        return with_other_view(sketch, replace(sketch.graph, passes=passes))
 
     def own_path(self, path: str) -> str:
         """Return the sketch's own path of a pass that ran for this map; "" for the map's."""
@@ -91,11 +90,34 @@ def _within(sketch: Sketch, view: PassSpec, shown: Map) -> Sketch:
     both = Graph(USE, view.technique.path, (own, of), inputs=exports)
     spec = replace(view, use=USE, technique=both, inputs=inputs, values=())
     passes = tuple(spec if p.name == "view" else p for p in sketch.graph.passes)
-    overrides = tuple(
-        (f"view.{_INNER}{path[4:]}" if path.startswith("view.") else path, value)
-        for path, value in sketch.overrides
+    return with_other_view(sketch, replace(sketch.graph, passes=passes), f"view.{_INNER}.")
+
+
+def with_other_view(sketch: Sketch, graph: Graph, inner: str = "") -> Sketch:
+    """Return a sketch with another graph, whose view is not the sketch's own.
+
+    What the sketch says of parameters of its own view is said of those inside ``inner``, "view.inner.";
+    without, it is left out: of values, presets, shots, keyframes and the list of main parameters.
+    """
+
+    def moved(path: str) -> str:
+        """Return the path in the graph; "" where it is left out."""
+        if not path.startswith("view."):
+            return path
+        return inner + path.removeprefix("view.") if inner else ""
+
+    def kept(values: tuple[tuple[str, Value], ...]) -> tuple[tuple[str, Value], ...]:
+        return tuple((new, value) for path, value in values if (new := moved(path)))
+
+    return replace(
+        sketch,
+        graph=graph,
+        overrides=kept(sketch.overrides),
+        presets=tuple(replace(preset, values=kept(preset.values)) for preset in sketch.presets),
+        shots=tuple(replace(shot, values=kept(shot.values)) for shot in sketch.shots),
+        keyframes=tuple(replace(key, values=kept(key.values)) for key in sketch.keyframes),
+        main=tuple(filter(None, map(moved, sketch.main))),
     )
-    return replace(sketch, graph=replace(sketch.graph, passes=passes), overrides=overrides)
 
 
 def refs_of(flat: Flat) -> list[str]:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from playground.studio.land.looks import LOOKS, interval_for, look_of, look_title
+from playground.sketch.assign import find_targets
+from playground.sketch.keyframes import Keyframe
+from playground.sketch.load import load
+from playground.sketch.map_sketch import Map
+from playground.sketch.model import Preset, Shot
+from playground.studio.land.looks import LOOKS, Look, interval_for, look_of, look_title
 from playground.studio.session import Session
 
 from ..sketch_texts import SMALL_VIEW, map_of, passes
@@ -41,6 +47,27 @@ def test_every_look_draws_and_none_changes_the_sketch(
         pictures.add(frame.array.tobytes())
     assert len(pictures) == len(LOOKS) and session.sketch is before
     assert (folder / file).read_text(encoding="utf-8") == FILES[file]
+
+
+@pytest.mark.parametrize("seen", [Look("clay", "height:height"), Map("height:height"), Map("view:picture")])
+def test_what_a_sketch_says_of_its_view_goes_with_the_view(seen: Look | Map) -> None:
+    """In presets, shots, keyframes and the main parameters as well: a page names them all."""
+    said = (("height.level", 0.5), ("view.haze", 0.25))
+    sketch = replace(
+        load("l_dot_n").with_values({"view.haze": 0.25}),
+        presets=(Preset("far", said),),
+        shots=(Shot("far", values=said),),
+        keyframes=(Keyframe(0.0, values=said),),
+        main=("height.level", "view.haze"),
+    )
+    shown = seen.of(sketch)
+    groups = [shown.presets[0].values, shown.shots[0].values, shown.keyframes[0].values]
+    within = "view.seen.haze" if isinstance(seen, Map) and seen.ref.startswith("view") else ""
+    assert groups == [(said[0], (within, 0.25)) if within else (said[0],)] * 3
+    assert shown.main == tuple(filter(None, ("height.level", within)))
+    assert dict(shown.overrides) == ({within: 0.25} if within else {})
+    for path, _ in shown.overrides:
+        assert find_targets(shown.graph, path)
 
 
 def test_slopes_are_coloured_by_true_degrees(open_session: OpenSession, folder: Path) -> None:

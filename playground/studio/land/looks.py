@@ -13,6 +13,7 @@ from pathlib import Path
 
 from playground.engine.plan import Plan, view_height
 from playground.sketch.assign import find_targets
+from playground.sketch.map_sketch import with_other_view
 from playground.sketch.model import Graph, Parameter, PassSpec, Sketch, Technique, Value
 from playground.sketch.techniques import read_technique
 from playground.studio.language import tr
@@ -58,8 +59,7 @@ class Look:
 
     def of(self, sketch: Sketch) -> Sketch:
         """Return the sketch in this look: of the same graph always the same one."""
-        overrides = tuple(v for v in sketch.overrides if not v[0].startswith("view."))
-        return replace(sketch, graph=_with_view(sketch.graph, self), overrides=overrides)
+        return with_other_view(sketch, _with_view(sketch.graph, self))
 
     def sun(self) -> tuple[Parameter, Value] | None:
         """Return the direction of its light, and the azimuth and elevation it has; None where it has none."""
