@@ -85,8 +85,11 @@ def place_of(cell: int, size: tuple[int, int]) -> tuple[float, float, float, flo
 
 
 def reference_of(name: str) -> Path | None:
-    """Return the first reference of a sketch's shots; None for one without, and outside of a checkout."""
-    return min((GLSL.parent / SCREENSHOTS / name).glob("*/*.png"), default=None)
+    """Return the reference of a sketch's first shot that has one; None without, and outside of a checkout."""
+    shots = tomllib.loads((SKETCHES / f"{name}.toml").read_text("utf-8")).get("shot", [])
+    folders = sorted((GLSL.parent / SCREENSHOTS / name).glob("*/"))
+    paths = (folder / f"{shot['name']}.png" for shot in shots for folder in folders)
+    return next((path for path in paths if path.is_file()), None)
 
 
 def make_atlas() -> None:
@@ -117,9 +120,8 @@ def shrunk(picture: Image.Image) -> Image.Image:
 
     wide, high = picture.size
     scale = min(wide / CELL[0], high / CELL[1])
-    left, top = (wide - scale * CELL[0]) / 2, (high - scale * CELL[1]) / 2
-    box = (left, top, left + scale * CELL[0], top + scale * CELL[1])
-    return picture.resize(CELL, Image.Resampling.BOX, box=box)
+    left, top = max(wide - scale * CELL[0], 0.0) / 2, max(high - scale * CELL[1], 0.0) / 2  # 0 may be rounded
+    return picture.resize(CELL, Image.Resampling.BOX, box=(left, top, wide - left, high - top))
 
 
 def _described(path: Path) -> dict[str, object]:
