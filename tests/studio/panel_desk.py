@@ -25,6 +25,8 @@ from playground.studio.problems.panel import ErrorsList
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 
+from .watched import WIDGETS
+
 
 class Bare:
     """A panel on a session, frame by frame, at 60 frames a second."""
@@ -61,28 +63,8 @@ class Bare:
         self.places: dict[str, tuple[float, float, float, float]] = {}  # by label: x, y, width, height
         self.labels: dict[int, str] = {}  # by imgui's number
         self._watched: list[tuple[object, str, object]] = []
-        for owner, name in (
-            (imgui, "button"),
-            (imgui, "small_button"),
-            (imgui, "menu_item_simple"),
-            (imgui, "selectable"),
-            (imgui, "checkbox"),
-            (imgui, "radio_button"),
-            (imgui, "begin_combo"),
-            (imgui, "input_text_with_hint"),
-            (imgui, "input_text"),
-            (imgui, "input_int"),
-            (imgui, "invisible_button"),
-            (imgui, "drag_float"),
-            (imgui, "slider_float"),
-            (imgui, "slider_int"),
-            (imgui, "drag_int"),
-            (imgui, "input_double"),
-            (imgui, "tree_node_ex"),
-            (imgui, "collapsing_header"),
-            (imgui, "text_link"),
-        ):
-            self.watch(owner, name)
+        for name in WIDGETS:
+            self.watch(imgui, name)
         self.clipboard = ""
         imgui.get_platform_io().platform_set_clipboard_text_fn = self._copied
         self.quits = False

@@ -61,7 +61,7 @@ class Screen:
     """An X server with nothing on it but what a test opens."""
 
     def __init__(self, folder: Path, width: int, height: int) -> None:
-        self.folder = folder
+        self.folder, self.size = folder, (width, height)
         read, write = os.pipe()
         arguments = ["-displayfd", str(write), "-screen", "0", f"{width}x{height}x24", "-fbdir", str(folder)]
         self.server = subprocess.Popen(
@@ -103,11 +103,15 @@ class Program:
         *,
         code: bool = False,
         strip: bool = False,
+        as_delivered: bool = False,
     ) -> None:
-        """Start it; ``code``: with the code pane, ``strip``: with the strip below the picture."""
+        """Start it; ``code``: with the code pane, ``strip``: with the strip below the picture.
+
+        ``as_delivered``: with what a window shows that was never opened before.
+        """
         self.screen = screen
         interface = folder / "state" / NAME / "interface.json"
-        if not interface.exists():
+        if not interface.exists() and not as_delivered:
             interface.parent.mkdir(parents=True, exist_ok=True)
             # Beside the panel is the picture alone; what the panel begins with leaves room for what follows.
             panes = {"code": float(code), "strip": float(strip), "terrain": 0.0}
