@@ -10,6 +10,7 @@ from string import Formatter
 import numpy as np
 import pytest
 from imgui_bundle import imgui
+from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
 from playground.paths import SKETCHES
@@ -41,18 +42,22 @@ def test_every_shipped_sketch_has_a_card_with_its_own_words() -> None:
 
 @pytest.mark.parametrize("name", slow_but(shipped_sketches()))
 def test_a_picture_is_that_of_the_reference(name: str) -> None:
-    """Of all pictures of the atlas its own is the nearest."""
-    reference = made.reference_of(name)
-    assert reference is not None
-    atlas = read_atlas()
-    wanted = np.asarray(shrunk(made.read_picture(reference)), float)
+    """Of all pictures of the atlas its own is the nearest, or one of a sketch whose reference is the same."""
+
+    def reference_of(name: str) -> NDArray[np.float64]:
+        path = made.reference_of(name)
+        assert path is not None
+        return np.asarray(shrunk(made.read_picture(path)), float)
+
+    atlas, wanted = read_atlas(), reference_of(name)
     far: dict[str, float] = {}
     for row in thumbnails():
         left, top, right, bottom = np.multiply(place_of(row.cell, atlas.size), atlas.size * 2).round()
         part = np.asarray(atlas.crop((left, top, right, bottom)), float)
         assert part.shape == (CELL[1], CELL[0], 3)
         far[row.name] = np.abs(part - wanted).mean()
-    assert min(far, key=far.__getitem__) == name
+    nearest = min(far, key=far.__getitem__)
+    assert np.abs(reference_of(nearest) - wanted).mean() < 0.5, f"{nearest}; half a level is no difference"
 
 
 def test_recent_sketches_are_the_last_first_and_survive_anything(tmp_path: Path) -> None:
