@@ -10,8 +10,8 @@
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 #include "terrain/heightfield.glsl"
-#pragma draw(mesh = "sheet", output = "frame:rgba16f", blend = "alpha", repeat = "1 if sea else 0", \
-             level = "sea_level")
+#pragma draw(mesh = "sheet", output = "frame:rgba16f", blend = "alpha", level = "sea_level", \
+             repeat = "1 if sea else 0")
 
 uniform sampler2D height;  //! input
 uniform sampler2D daylight;  //! input("black")

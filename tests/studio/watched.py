@@ -21,6 +21,7 @@ WORDED = ("button", "small_button", "menu_item_simple", "selectable", "checkbox"
 WIDGETS = (
     *WORDED,
     "begin_combo",
+    "text_link",
     "begin_tab_item",
     "tab_item_button",
     "input_text_with_hint",
