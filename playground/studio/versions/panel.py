@@ -34,7 +34,7 @@ class VersionsPanel:
     def __init__(self, ctx: moderngl.Context, versions: Versions) -> None:
         self.versions = versions
         self._ctx = ctx
-        self._textures: dict[str, moderngl.Texture | None] = {}  # by key
+        self._textures: dict[tuple[str, float], moderngl.Texture | None] = {}  # by key, and when it was kept
         self._typed = ""
         self._typed_for = ""  # the version that the name is of
         self._is_double = False  # the mouse was pressed the second time
@@ -76,7 +76,7 @@ class VersionsPanel:
             self._count = len(items)
             imgui.set_scroll_x(len(items) * (size.x + gap))
         imgui.end_child()
-        self._forget(version.key for version in items)
+        self._forget((version.key, version.at) for version in items)
 
     def release(self) -> None:
         """Release the pictures; they are read again when they are drawn."""
@@ -86,7 +86,7 @@ class VersionsPanel:
         """Go on in another context: the one before is lost."""
         self._ctx, self._textures = ctx, {}
 
-    def _forget(self, kept: Iterable[str]) -> None:
+    def _forget(self, kept: Iterable[tuple[str, float]]) -> None:
         for key in self._textures.keys() - set(kept):
             texture = self._textures.pop(key)
             if texture is not None:
@@ -216,9 +216,10 @@ class VersionsPanel:
             imgui.end_popup()
 
     def _texture(self, version: Version) -> moderngl.Texture | None:
-        if version.key not in self._textures:
-            self._textures[version.key] = self._read(version)
-        return self._textures[version.key]
+        key = version.key, version.at  # one that is kept again has another picture
+        if key not in self._textures:
+            self._textures[key] = self._read(version)
+        return self._textures[key]
 
     def _read(self, version: Version) -> moderngl.Texture | None:
         try:
