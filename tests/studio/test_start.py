@@ -18,7 +18,7 @@ from playground.sketch.find import shipped_sketches
 from playground.studio import language
 from playground.studio.language import choose_language, tr
 from playground.studio.start import thumbnails as made
-from playground.studio.start.page import TEMPLATES, Card, StartPage
+from playground.studio.start.page import LESSONS, TEMPLATES, Card, StartPage
 from playground.studio.start.panel import StartPanel
 from playground.studio.start.recent import Recent
 from playground.studio.start.thumbnails import CELL, SUBJECTS, place_of, read_atlas, shrunk, thumbnails
@@ -101,6 +101,16 @@ def test_search_and_subject_choose_cards(page: StartPage) -> None:
     assert {card.subject for card in page.cards("shipped")} == {"erosion"}
     page.search = "no such thing"
     assert page.cards("shipped") == [] and page.first() is None
+
+
+def test_lessons_alone_are_a_subject_where_there_are_any(page: StartPage) -> None:
+    assert LESSONS not in page.subjects()
+    page.more = lambda: [Card("lesson 1", "The march", "", lambda: True, "lesson")]
+    page.open()
+    assert LESSONS in page.subjects()
+    page.subject = LESSONS
+    assert [card.title for card in page.cards("lesson")] == ["The march"]
+    assert page.cards("shipped") == [] and page.cards("recent") == []
 
 
 def test_a_card_opens_its_sketch_and_closes_the_page(page: StartPage, bare: Bare) -> None:

@@ -52,7 +52,10 @@ TEMPLATES = (
         "shader", "From a shader of another tool…", "Of Shadertoy, ISF or with a main of its own", "file"
     ),
     Template("clipboard", "From the clipboard", "A shader's text that was copied"),
+    Template("lesson", "From a lesson…", "Its terrain, explained step by step while you change it"),
 )
+LESSONS = "lessons"
+"""The subject under which lessons alone are shown."""
 
 
 @dataclass
@@ -63,7 +66,7 @@ class StartPage:
     recent: Recent = field(default_factory=Recent)
     shown: bool = False
     search: str = ""
-    subject: str = ""  # one of ``SUBJECTS``; "": all
+    subject: str = ""  # one of ``subjects()``; "": all
     more: Callable[[], Iterable[Card]] = lambda: ()  # the cards of rooms, as lessons
     _cards: list[Card] = field(default_factory=list)
     _language: str = ""  # of the cards
@@ -97,16 +100,21 @@ class StartPage:
             card
             for card in self._cards
             if card.group == group
-            and (not self.subject or not card.subject or card.subject == self.subject)
+            and self._is_of_subject(card)
             and all(
                 word in f"{' '.join(labels_of(card.title))} {card.words} {card.note}".casefold()
                 for word in words
             )
         ]
 
+    def _is_of_subject(self, card: Card) -> bool:
+        if self.subject == LESSONS:
+            return card.group == "lesson"
+        return not self.subject or not card.subject or card.subject == self.subject
+
     def subjects(self) -> Sequence[str]:
-        """Return the subjects of shipped sketches."""
-        return SUBJECTS
+        """Return the subjects of shipped sketches, and lessons where there are any."""
+        return (*SUBJECTS, LESSONS) if any(card.group == "lesson" for card in self._cards) else SUBJECTS
 
     def choose(self, card: Card) -> None:
         """Do what a card is for, and close the page where that worked."""

@@ -16,7 +16,7 @@ from playground.studio.draw import QUIET, button, explain, fitting, menu, window
 from playground.studio.interface import Interface
 from playground.studio.language import tr, tr_label
 from playground.studio.settings_panel import draw_settings, settings_label
-from playground.studio.start.page import TEMPLATES, Card, StartPage, Template, has_file_dialogs
+from playground.studio.start.page import LESSONS, TEMPLATES, Card, StartPage, Template, has_file_dialogs
 from playground.studio.start.thumbnails import CELL, place_of, read_atlas, read_picture
 from playground.studio.theme import Theme
 
@@ -36,6 +36,7 @@ _SUBJECTS = {
     "textures": "textures",
     "light": "light",
     "methods": "other",
+    LESSONS: "lessons",
 }
 
 
@@ -106,6 +107,8 @@ class StartPanel:
         with menu(f"+ {tr('New')}###new", "new sketch", tr("A sketch of your own, in this folder")) as opened:
             if opened:
                 for template in TEMPLATES:
+                    if template.key == "lesson" and LESSONS not in page.subjects():
+                        continue
                     if imgui.menu_item_simple(f"{tr(template.title)}##{template.key}", tr(template.note)):
                         self._begin(page, template)
         imgui.same_line()
@@ -124,6 +127,8 @@ class StartPanel:
     def _begin(self, page: StartPage, template: Template) -> None:
         if template.needs:
             self._ask_for_file(template)
+        elif template.key == "lesson":
+            page.subject, page.search = LESSONS, ""
         elif template.key == "clipboard":
             before = page.actions.session.path
             page.actions.paste(imgui.get_clipboard_text() or "")
