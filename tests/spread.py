@@ -1,8 +1,8 @@
 """Sample the many cases of one test: a run has a part of them, the next commit another part.
 
 Where one function is called with many parameters, as for every size, seed and sketch, a bug shows in most of
-its cases. The everyday run has a quarter of them, the slow run another quarter, and of a test that is slow
-anyway a quarter. The commit's hash and the case's name choose, so one commit always has the same cases and a
+its cases. The everyday run has a sixth of them, the slow run another sixth, and of a test that is slow
+anyway a sixth. The commit's hash and the case's name choose, so one commit always has the same cases and a
 few commits have all. Each tenth commit runs them all, and so does ``--all``. Cases named on the command line
 and those of tests marked ``always`` are never left out.
 """
@@ -19,7 +19,7 @@ import pytest
 
 TESTS = Path(__file__).parent
 MAX_UNSAMPLED = 2  # cases of a function that all run
-PARTS = 4  # of the cases of a function
+PARTS = 6  # of the cases of a function
 FULL_INTERVAL = 10  # commits from one full run to the next
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 from itertools import product
 from pathlib import Path
@@ -10,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from . import spread
-from .spread import FULL_INTERVAL, MAX_UNSAMPLED, TESTS, Spread
+from .spread import FULL_INTERVAL, MAX_UNSAMPLED, PARTS, TESTS, Spread
 
 UNSAMPLED_CASES = [str(i) for i in range(MAX_UNSAMPLED)]
 MANY = ["-".join(case) for case in product("abcdefgh", "1234", "xyz")]
@@ -50,17 +51,18 @@ def test_few_cases_and_those_of_other_folders_all_run():
 
 
 @pytest.mark.parametrize("seed", ["1", "2"])
-def test_each_run_has_about_a_quarter(seed: str):
+def test_each_run_has_about_one_part(seed: str):
     everyday, slow = runs(MANY, Spread(seed))
     assert everyday[0] == MANY[0] and not set(everyday) & set(slow)
     for part in (everyday, slow, runs(MANY, Spread(seed), "slow")[1]):
-        assert 0.15 < len(part) / len(MANY) < 0.35
+        share, deviation = 1 / PARTS, math.sqrt(1 / PARTS * (1 - 1 / PARTS) / len(MANY))
+        assert abs(len(part) / len(MANY) - share) < 3 * deviation
         assert {name[-1] for name in part} == set("xyz")
 
 
-def test_ten_seeds_reach_almost_every_case_and_one_repeats():
-    parts = [runs(MANY, Spread(str(seed)), "slow")[1] for seed in range(10)]
-    # A case is missed by ten independent quarters with the probability 0.75 ** 10 = 0.056.
+def test_sixteen_seeds_reach_almost_every_case_and_one_repeats():
+    parts = [runs(MANY, Spread(str(seed)), "slow")[1] for seed in range(16)]
+    # A case is missed by sixteen independent sixths with the probability (5 / 6) ** 16 = 0.054.
     assert len(set().union(*parts)) > 0.85 * len(MANY)
     assert parts[3] == runs(MANY, Spread("3"), "slow")[1] != parts[4]
 

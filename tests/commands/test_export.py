@@ -160,7 +160,7 @@ def test_every_example_of_the_help_runs(folder: Path, capsys: pytest.CaptureFixt
     written = set(printed(capsys)[0].split())
     assert written == set(names(folder)) == {
         "lit.glb", "terrain.png", "terrain.tif", "terrain.r16", "terrain.r16.json", "ground.webp",
-        "terrain.glb", "terrain.obj", "terrain.mtl", "terrain-texture.png",
+        "terrain.glb", "model.stl", "terrain.obj", "terrain.mtl", "terrain-texture.png",
         "hills.json", "fractal.fs", "page.html", "noise.html", "steps.html", "in-its-place.tif",
     }  # fmt: skip
 

@@ -127,7 +127,8 @@ def real_heights(path: Path) -> Path:
     return geotiff(path, heights, {1024: 1, 1025: 1, 3072: 32616}, (30.0, 30.0), tie, metadata=unit)
 
 
-@pytest.mark.parametrize(("size", "language"), [((1280, 720), "en"), ((2560, 1440), "fr")])
+@pytest.mark.parametrize("size", [(1280, 720), (2560, 1440)], ids=["small", "large"])
+@pytest.mark.parametrize("language", ["en", "fr"])
 def test_a_terrain_in_ten_minutes(tmp_path: Path, size: tuple[int, int], language: str) -> None:
     screen = Screen(tmp_path, *size)
     home = tmp_path / "home"

@@ -170,5 +170,5 @@ def test_a_click_accepts_and_another_undoes(leave, browser: Browser) -> None:
         browser.click("#done")
         serving.join(120)
         assert not serving.is_alive()
-        assert shown(browser, "#banner").startswith("Done")
+        browser.wait('document.querySelector("#banner").innerText.startsWith("Done")')
     assert browser.log() == []
