@@ -372,8 +372,9 @@ class SessionMachine(RuleBasedStateMachine):
         if not self.is_checking:
             self.frame()
             return
-        if self.pending:
-            self.pending.pop()
+        chosen = [choice for choice in self.pending if {TECHNIQUE, FILE} & choice.keys()]
+        if chosen:  # the latest that is not taken back
+            self.pending = [choice for choice in self.pending if choice is not chosen[-1]]
         self.harness.answer(BAD)
         if self.harness.drafts.stage is ReloadStage.NONE:
             self.passed()  # the rest is drawn already: it needs no check
