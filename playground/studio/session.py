@@ -28,16 +28,15 @@ from playground.sketch.assign import find_targets, resolve
 from playground.sketch.edit_passes import without_muted
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map, refs_of
-from playground.sketch.model import Camera, Graph, Sketch, Value
+from playground.sketch.model import Graph, Sketch, Value
 from playground.sketch.traits import has_moving_counts, is_animated, traits_of
 from playground.studio.clock import Clock
 from playground.studio.edits.drafts import Drafts
 from playground.studio.edits.edits import Draft, StoredEdits
-from playground.studio.land.looks import Appearance
 from playground.studio.language import tr
 from playground.studio.picture.gestures import turned_sun
 from playground.studio.picture.shown_picture import CatchUp, ShownPicture
-from playground.studio.picture.view import Place, View, fitted, in_view, steps_of_repeats
+from playground.studio.picture.view import Kept, View, fitted, in_view, steps_of_repeats
 from playground.studio.reload.dependencies import DataFiles
 from playground.studio.reload.stages import Checks, Reload, ReloadStage, Sandbox
 
@@ -370,17 +369,9 @@ class Session:
             return None
         return result.textures[source.output], (id(engine), result.number, engine.runs[source.path])
 
-    def restore_view(
-        self,
-        steps: Mapping[str, int],
-        shown: Map | None,
-        views: Mapping[int, Camera] | None = None,
-        places: Mapping[str, Place] | None = None,
-        appearance: Appearance | None = None,
-    ) -> None:
+    def restore_view(self, steps: Mapping[str, int], shown: Map | None, kept: Kept | None = None) -> None:
         """Stop repeats and show a map, as ``View.restore``; of a sketch being opened, once that is drawn."""
-        later = self.drafts.opening
-        self.view.restore(steps, shown, views=views, places=places, appearance=appearance, later=later)
+        self.view.restore(steps, shown, kept, later=self.drafts.opening)
         self._take_exaggeration()
 
     def stop_at(self, path: str, step: int) -> None:

@@ -23,6 +23,7 @@ from playground.studio.edits.edits import Edits, FileValue
 from playground.studio.edits.memory import Compared, Memory, Remembered
 from playground.studio.land.land import keep_view, recall_view
 from playground.studio.land.looks import Appearance, Look, look_of
+from playground.studio.picture.view import Kept
 from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 
@@ -61,9 +62,11 @@ FULL = Remembered(
         0.25,
         16.0,
     ),
-    ((1, Camera(azimuth=180.0, elevation=89.0)), (3, Camera(target=(1.0, 2.0, 3.0)))),
-    (("height", (1.5, 2.0)),),
-    Appearance(2.5, Look("clay", "height:height", (("sunlight.sun", (120.0, 30.0)),))),
+    Kept(
+        ((1, Camera(azimuth=180.0, elevation=89.0)), (3, Camera(target=(1.0, 2.0, 3.0)))),
+        (("height", (1.5, 2.0)),),
+        Appearance(2.5, Look("clay", "height:height", (("sunlight.sun", (120.0, 30.0)),))),
+    ),
 )
 
 
@@ -135,11 +138,10 @@ def test_a_file_of_before_there_was_more_to_remember_is_read(tmp_path: Path) -> 
     memory = Memory(tmp_path / "sketch.toml", tmp_path)
     memory.write(FULL)
     table = json.loads(memory.path.read_text(encoding="utf-8"))
-    for name in ("at", "camera_in_file", "loop", "compared", "views", "places", "appearance"):
+    for name in ("at", "camera_in_file", "loop", "compared", "kept"):
         del table[name]
     memory.path.write_text(json.dumps(table), encoding="utf-8")
-    expected = replace(FULL, at=None, camera_in_file=None, loop=None, compared=None, views=())
-    expected = replace(expected, places=(), appearance=Appearance())
+    expected = replace(FULL, at=None, camera_in_file=None, loop=None, compared=None, kept=Kept())
     assert memory.read() == (expected, "")
 
 
@@ -217,20 +219,20 @@ def test_exaggeration_and_look_come_back_with_their_sketch(place: Place) -> None
     assert session.frame(SIZE) is not None
     session.exaggerate(2.0)
     session.view.show_as(look_of("slope", session.plan))
-    shown = session.view.appearance
+    shown = session.view.kept.appearance
     autosave.look((640, 480))
     autosave.close()
     again, autosave = place.start()
     assert again.frame(SIZE) is not None, again.error
-    assert again.view.appearance == shown and again.exaggeration == 2.0 and shown.look is not None
+    assert again.view.kept.appearance == shown and again.exaggeration == 2.0 and shown.look is not None
     assert again.plan is not None and again.plan.exaggeration == 2.0
     autosave.look((640, 480))
     autosave.open(place.other())
     autosave.look((640, 480))
-    assert again.frame(SIZE) is not None and again.view.appearance == Appearance()
+    assert again.frame(SIZE) is not None and again.view.kept.appearance == Appearance()
     autosave.look((640, 480))
     autosave.open(place.sketch)
-    assert again.frame(SIZE) is not None and again.view.appearance == shown
+    assert again.frame(SIZE) is not None and again.view.kept.appearance == shown
 
 
 def test_it_is_written_as_one_goes_once_it_rests(place: Place) -> None:
@@ -380,7 +382,7 @@ def test_a_broken_file_is_set_aside_and_that_is_reported(place: Place, name: str
         "at",
         "map_values",
         "time",
-        "appearance",
+        "kept",
     ],
 )
 @each("wrong", [7, "x", [1], {"a": 1}, [[]], float("inf")])

@@ -143,4 +143,4 @@ def test_tour_of_passes(app: Passes) -> None:
     kept = [
         json.loads(path.read_text("utf-8")) for path in app.file.parents[1].rglob("state/**/sketch-*.json")
     ]
-    assert [node for state in kept for node, _ in state["places"]] == ["height"]
+    assert [node for state in kept for node, _ in state["kept"]["places"]] == ["height"]

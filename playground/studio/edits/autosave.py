@@ -167,9 +167,7 @@ class Autosave:
         session.restore_view(
             dict(remembered.steps),
             Map(remembered.map, remembered.map_values) if remembered.map else None,
-            dict(remembered.views),
-            dict(remembered.places),
-            remembered.appearance,
+            remembered.kept,
         )
 
     def _drawn_of(self, draft: Draft) -> dict[str, Any]:
@@ -187,9 +185,7 @@ class Autosave:
             "map": shown.ref if shown else "",
             "map_values": shown.values if shown else (),
             "steps": tuple(sorted(view.steps.items())),
-            "views": tuple(sorted(view.views.items())),
-            "places": tuple(sorted(view.places.items())),
-            "appearance": view.appearance,
+            "kept": view.kept,
         }
 
     def _snapshot(self, draft: Draft, window: tuple[int, int], at: tuple[int, int] | None) -> Remembered:

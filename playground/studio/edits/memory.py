@@ -25,8 +25,8 @@ from playground.files import new_name, read_regular, write_file
 from playground.json_text import read_json
 from playground.sketch.model import Camera, Value
 from playground.studio.edits.edits import Edits, FileValue, StoredEdits
-from playground.studio.land.looks import Appearance
 from playground.studio.language import tr
+from playground.studio.picture.view import Kept
 
 
 def set_aside(path: Path, what: str, error: Exception) -> str:
@@ -76,9 +76,7 @@ class Remembered:
     camera_in_file: Camera | None = None  # the file's, where another was edited
     loop: tuple[float, float] | None = None  # [s] the times between which time goes round
     compared: Compared | None = None
-    views: tuple[tuple[int, Camera], ...] = ()  # numbered ones that are kept
-    places: tuple[tuple[str, tuple[float, float]], ...] = ()  # of the graph's nodes that were moved
-    appearance: Appearance = field(default_factory=Appearance)  # of the terrain
+    kept: Kept = field(default_factory=Kept)  # views, places of nodes, the look
 
     @property
     def start(self) -> StoredEdits:

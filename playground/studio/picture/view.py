@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,15 @@ Place = tuple[float, float]
 """Of a node of the graph: column from the left, and its middle downwards, in heights of a node."""
 
 
+@dataclass(frozen=True)
+class Kept:
+    """What a window keeps of a sketch besides its edits."""
+
+    views: tuple[tuple[int, Camera], ...] = ()  # numbered ones
+    places: tuple[tuple[str, Place], ...] = ()  # of nodes of the graph that were moved
+    appearance: Appearance = field(default_factory=Appearance)  # of the terrain
+
+
 class View:
     """What one session draws; ``revision`` counts the changes."""
 
@@ -37,37 +46,32 @@ class View:
         self.interpolated = True  # what a stopped repeat has not reached is filled
         self.views: dict[int, Camera] = {}  # kept, by number
         self.places: dict[str, Place] = {}  # of nodes of the graph that were moved
-        self._next_kept: tuple[dict[int, Camera], dict[str, Place], Appearance] = {}, {}, Appearance()
         self.exaggeration = 1.0  # how many times higher than it is the terrain is shown
         self.turning = False  # the camera goes round, as on a turntable
         self.turned = 0.0  # [degrees] by which it has gone, for the picture alone
         self.framed_for = DEFAULT_PICTURE  # [pixels] the image whose sides stay visible in a narrower window
         self.revision = 0
         self._next: tuple[dict[str, int], Map | None] | None = None  # for a sketch that is being opened
+        self._next_kept = Kept()
 
     def restore(
         self,
         steps: Mapping[str, int],
         shown: Map | None,
+        kept: Kept | None = None,
         *,
-        views: Mapping[int, Camera] | None = None,
-        places: Mapping[str, Place] | None = None,
-        appearance: Appearance | None = None,
         later: bool = False,
     ) -> None:
         """Stop repeats after so many steps, and show a map or, with None, the sketch's own view.
 
-        ``views``: the numbered ones that are kept; ``places``: of the graph's nodes that were moved;
-        ``appearance``: of the terrain. ``later``: once the sketch that is being opened is drawn.
+        ``kept``: None leaves what there is. ``later``: once the sketch that is being opened is drawn.
         """
         if later:
-            self._next = (dict(steps), shown)
-            self._next_kept = dict(views or {}), dict(places or {}), appearance or Appearance()
+            self._next, self._next_kept = (dict(steps), shown), kept or Kept()
             return
-        self.views = dict(views) if views is not None else self.views
-        self.places = dict(places) if places is not None else self.places
-        if appearance is not None:
-            self.look, self.exaggeration = appearance.look, appearance.exaggeration
+        if kept is not None:
+            self.views, self.places = dict(kept.views), dict(kept.places)
+            self.look, self.exaggeration = kept.appearance.look, kept.appearance.exaggeration
         self.steps.clear()
         self.steps.update(steps)
         self.map = shown
@@ -83,8 +87,7 @@ class View:
         (steps, shown), self._next = self._next, None
         self.muted = frozenset()
         self.turning, self.turned = False, 0.0
-        views, places, appearance = self._next_kept
-        self.restore(steps, shown, views=views, places=places, appearance=appearance)
+        self.restore(steps, shown, self._next_kept)
         return True
 
     def forget_next(self) -> None:
@@ -97,9 +100,10 @@ class View:
         return self._next if self._next is not None else (dict(self.steps), self.map)
 
     @property
-    def appearance(self) -> Appearance:
-        """How the terrain is shown, as ``restore`` takes it."""
-        return Appearance(self.exaggeration, self.look)
+    def kept(self) -> Kept:
+        """What ``restore`` takes besides, to have it so again."""
+        appearance = Appearance(self.exaggeration, self.look)
+        return Kept(tuple(sorted(self.views.items())), tuple(sorted(self.places.items())), appearance)
 
     def show(self, shown: Map | None) -> None:
         """Show a map or, with None, the sketch's own view."""
