@@ -19,6 +19,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from playground.studio import theme
 from playground.studio.interface import TypedAhead
+from playground.studio.theme import Theme
 
 Option = TypeVar("Option")
 Area = tuple[float, float, float, float]
@@ -71,6 +72,24 @@ def window(
         imgui.begin(name, None, flags)
         yield
         imgui.end()
+
+
+def place_side_panel(
+    width: float, limits: tuple[float, float], look: Theme, *, left: float = 0.0, beside: float
+) -> float:
+    """Place the next window at the left side, over the whole height; return its width if nobody pulls it.
+
+    ``width``, its ``limits`` and what stays ``beside`` it at least in units of scale 1, ``left`` and the
+    result in the window's. imgui cuts a size to whole pixels; so is the result, or each scale would
+    look like a pull.
+    """
+    room = imgui.get_main_viewport().size
+    widest = max(room.x - left - beside * look.scale, 160.0)
+    low, target, high = (float(int(min(size * look.scale, widest))) for size in (limits[0], width, limits[1]))
+    imgui.set_next_window_pos(ImVec2(left, 0))
+    imgui.set_next_window_size(ImVec2(target, room.y))
+    imgui.set_next_window_size_constraints(ImVec2(low, room.y), ImVec2(high, room.y))
+    return target
 
 
 @contextmanager

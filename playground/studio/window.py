@@ -117,6 +117,7 @@ _HINTS = {
 _MIN_SIZE = (480, 320)
 _SIGNS = {"+": "+", "=": "+", "-": "-"}  # what a key's own name asks for; + is over = on many keyboards
 _SIGN_KEYS = (glfw.KEY_EQUAL, glfw.KEY_MINUS, glfw.KEY_RIGHT_BRACKET, glfw.KEY_SLASH, glfw.KEY_BACKSLASH)
+_READINGS = 4  # of the window's size, until two in a row are the same
 _ATTEMPTS, _BETWEEN = 20, 0.5  # a driver that was reset may take some seconds to come back [s]
 
 
@@ -172,8 +173,11 @@ class Window:
     @property
     def density(self) -> float:
         """Pixels in one of the window's own units: 2 on a Retina screen, 1 on Windows and X11."""
-        wide, _ = glfw.get_window_size(self._handle)
-        return float(self.pixels[0] / wide) if wide and self.pixels[0] else 1.0
+        for _ in range(_READINGS):  # a person may pull its edge between the two questions
+            before, pixels = glfw.get_window_size(self._handle), self.pixels
+            if before == glfw.get_window_size(self._handle):
+                break
+        return float(pixels[0] / before[0]) if before[0] and pixels[0] else 1.0
 
     @property
     def scale(self) -> float:

@@ -179,8 +179,10 @@ def test_a_narrow_window_makes_the_panel_no_narrower_for_good(harness):
     harness.open(show=False)
     before = harness.reader.progress.width
     imgui.get_io().display_size = ImVec2(500, 400)
-    harness.run_frames(3)
-    assert harness.reader.progress.width == before
+    for scale in (1.0, 1.337, 0.691):
+        harness.theme.rescale(scale)
+        harness.run_frames(3)
+        assert harness.reader.progress.width == before, scale
 
 
 def test_every_page_is_drawn_in_both_languages_at_every_size(harness):

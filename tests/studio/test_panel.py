@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from playground.data.image_files import write_png
 from playground.engine.camera import look
@@ -185,6 +185,17 @@ def test_panel_footer_lines_fit_at_any_width(bare: Bare) -> None:
         bare.run_frames(3)
         panel = imgui.internal.find_window_by_name("panel")
         assert panel.content_size.y + 2 * panel.window_padding.y <= panel.size.y + 1, width
+
+
+@pytest.mark.parametrize("wide", [620, 1280])
+def test_no_scale_of_the_window_counts_as_a_pull(bare: Bare, wide: int) -> None:
+    imgui.get_io().display_size = ImVec2(wide, 410)
+    for width in (240.0, 330.0, 620.0):
+        bare.panel.width = width
+        for scale in (1.37, 0.689, 1.23, 1.0):
+            bare.theme.rescale(scale)
+            bare.run_frames(3)
+            assert bare.panel.width == width, scale
 
 
 def test_preset_shows_changes_since_and_new_one_is_saved(bare: Bare, folder: Path) -> None:

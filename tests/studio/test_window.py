@@ -540,9 +540,11 @@ def words_lead_to_the_texels_in_magenta(app: App) -> None:
 def test_tour_of_surviving(screen: Screen, tmp_path: Path) -> None:
     app = App(screen, tmp_path, "--remembered")
     try:
+        larger = app.now()["picture"]
         app.ask("windowsize", "--sync", app.window(), "620", "410")
         app.ask("windowmove", "--sync", app.window(), "210", "150")
         assert soon(lambda: app.geometry() == (210, 150, 620, 410))
+        app.changes(larger)
         app.do("mousemove", 650, 350)
         nearer = a_lost_context_costs_nothing_but_a_moment(app)
         memories = tmp_path / "state" / "terrain-shader-playground" / "sessions"

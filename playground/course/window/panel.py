@@ -57,7 +57,16 @@ from playground.shader.parameter import write
 from playground.sketch.assign import resolve
 from playground.sketch.find import find
 from playground.studio import theme
-from playground.studio.draw import SIDE_PANEL, button, fitting, inked, pushed_id, styled, window
+from playground.studio.draw import (
+    SIDE_PANEL,
+    button,
+    fitting,
+    inked,
+    place_side_panel,
+    pushed_id,
+    styled,
+    window,
+)
 from playground.studio.edits.history import History
 from playground.studio.language import shortcut
 from playground.studio.panel.parameter_list import PanelState, items_of, shown_values
@@ -648,14 +657,8 @@ class LessonPanel:
                 lambda to: follow(reader, to),
                 lambda to: link_text(reader, to),
             )
-        room, scale = imgui.get_main_viewport().size, look.scale
-        widest = max(room.x - _MIN_PICTURE_WIDTH * scale, 160.0)
-        imgui.set_next_window_pos(ImVec2(0, 0))
-        target = min(reader.progress.width * scale, widest)
-        imgui.set_next_window_size(ImVec2(target, room.y))
-        imgui.set_next_window_size_constraints(
-            ImVec2(min(MIN_WIDTH * scale, widest), room.y), ImVec2(min(MAX_WIDTH * scale, widest), room.y)
-        )
+        limits = MIN_WIDTH, MAX_WIDTH
+        target = place_side_panel(reader.progress.width, limits, look, beside=_MIN_PICTURE_WIDTH)
         with window("lesson", SIDE_PANEL, ground=theme.colour(theme.palette.ground)):
             page = Page(reader, lesson, look, self._texts, self.memory, self._textures_of(reader), present)
             _head(page)
@@ -668,8 +671,8 @@ class LessonPanel:
             imgui.end_child()
             _foot(page)
             width = imgui.get_window_size().x
-        if abs(width - target) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
-            reader.progress.width = width / scale
+        if width != target:  # pulled; a narrow window alone makes it no narrower for good
+            reader.progress.width = width / look.scale
         return float(width)
 
     def release(self) -> None:

@@ -36,6 +36,7 @@ from playground.studio.draw import (
     letters,
     menu,
     next_in_row,
+    place_side_panel,
     row,
     styled,
     with_typed_ahead,
@@ -82,13 +83,7 @@ class Panel:
         ``left``: what is taken there already.
         """
         room = imgui.get_main_viewport().size
-        widest = max(room.x - left - 160 * look.scale, 160.0)
-        target = min(self.width * look.scale, widest)
-        imgui.set_next_window_pos(ImVec2(left, 0))
-        imgui.set_next_window_size(ImVec2(target, room.y))
-        imgui.set_next_window_size_constraints(
-            ImVec2(min(240 * look.scale, widest), room.y), ImVec2(min(620 * look.scale, widest), room.y)
-        )
+        target = place_side_panel(self.width, (240, 620), look, left=left, beside=160)
         imgui.begin("panel", None, SIDE_PANEL)
         if bench.interface.searching and not bench.interface.keymap_shown:
             bench.interface.searching, self.memory.focus_search = False, True
@@ -118,7 +113,7 @@ class Panel:
             _footer(footer, look)
         width = imgui.get_window_size().x
         imgui.end()
-        if abs(width - target) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
+        if width != target:  # pulled; a narrow window alone makes it no narrower for good
             self.width = width / look.scale
         return width
 
