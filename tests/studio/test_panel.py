@@ -746,3 +746,28 @@ def test_a_low_panel_scrolls_with_its_head(open_bare: OpenBare, folder: Path) ->
             bare.run_frames(5)
         assert rows.scroll.y > 0 and rows.size.y > 300
         assert (bare.places["History"][1] < top) == (scale == 2.0)
+
+
+def test_several_loops_of_a_pass_are_folded_until_one_is_stopped(tmp_path: Path, open_bare: OpenBare) -> None:
+    raised = "float kernel(ivec2 texel) { return texelFetch(below, texel, 0).r + 0.1; }\n"
+    kernel = '#pragma kernel(output = "height:r32f")\nuniform sampler2D below; //! input(zero)\n' + raised
+    (tmp_path / "raise.glsl").write_text(kernel, encoding="utf-8")
+    inner = '[[pass]]\nname = "{}"\nuse = "./raise"\nrepeat = "{}"\nfeedback = {{ below = "height" }}\n'
+    twice = inner.format("low", 3) + inner.format("high", 2) + '[outputs]\nheight = "high:height"\n'
+    (tmp_path / "twice.toml").write_text(twice, encoding="utf-8")
+    text = "format = 1\nsize = 5\n" + passes(height="./twice") + map_of("height")
+    (tmp_path / "sketch.toml").write_text(text, encoding="utf-8")
+    bare = open_bare(tmp_path)
+
+    def sliders() -> list[str]:
+        bare.places.clear()
+        bare.run_frames(2)
+        return [label for label in bare.places if label.startswith("##steps of")]
+
+    assert sliders() == []
+    for both in (["##steps of height.low", "##steps of height.high"], []):
+        bare.run_frames()
+        bare.click("Loops: 2###loops")
+        assert sliders() == both
+    bare.session.stop_at("height.low", 1)
+    assert len(sliders()) == 2

@@ -441,29 +441,38 @@ def _files(spec: PassSpec, files: OpenFiles) -> None:
 
 
 def _steps(spec: PassSpec, session: Session) -> None:
-    """Draw a slider over the steps of each repeat in a pass."""
-    steps = session.view.steps
+    """Draw a slider over the steps of each repeat in a pass; several are folded until one is stopped."""
+    stopped = session.view.steps
     mine = {
         path: whole
         for path, whole in session.repeats.items()
         if whole > 0 and (path == spec.name or path.startswith(f"{spec.name}."))
     }
+    if len(mine) > 1:
+        if any(path in stopped for path in mine):
+            imgui.set_next_item_open(True)
+        flags = imgui.TreeNodeFlags_.span_avail_width | imgui.TreeNodeFlags_.no_tree_push_on_open
+        with inked(theme.palette.dim):
+            opened = imgui.tree_node_ex(f"{tr('Loops: {count}', count=len(mine))}###loops", flags)
+        if not opened:
+            return
     for path, whole in mine.items():
-        label = tr("Step") if len(mine) == 1 else tr("Step of {path}", path=path.partition(".")[2])
+        parts = path.split(".")[1:]  # the first is the pass
+        label = tr("Step") if len(mine) == 1 else ("…" if len(parts) > 2 else "") + ".".join(parts[-2:])
         note = tr(
             "How many of its {steps} {path} has run; Ctrl+click to type a number",
             steps=counted(whole, "step"),
             path=path,
         )
-        with row(label, note, edited=path in steps):
+        with row(label, note, edited=path in stopped):
 
             def text(now: int, last: int = whole) -> str:
                 return tr("all {now}", now=now) if now == last else str(now)
 
-            chosen = slide_whole(f"##steps of {path}", steps.get(path, whole), (0, whole), text)
+            chosen = slide_whole(f"##steps of {path}", stopped.get(path, whole), (0, whole), text)
             if chosen is not None:
                 session.stop_at(path, chosen)
-    if any(path in steps for path in mine) and any(
+    if any(path in stopped for path in mine) and any(
         isinstance(k, TexelKernel) and k.between for _, k in kernels_of(spec.technique)
     ):
         with row(
