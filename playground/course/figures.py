@@ -114,11 +114,6 @@ class Hero:
     alt: Mapping[str, str]  # what it shows, by language
 
 
-def hero_names(path: Path = FILE) -> list[str]:
-    """List the lessons that have a hero."""
-    return list(_file(path).table)
-
-
 def hero_of(lesson: str, sketches: Sketches | None = None, path: Path = FILE) -> Hero | None:
     """Return the hero of a lesson, None where it has none.
 

@@ -213,10 +213,6 @@ class Window:
         """Close it at the end of this frame."""
         glfw.set_window_should_close(self._handle, True)
 
-    def cancel_close(self) -> None:
-        """Cancel a request to close it."""
-        glfw.set_window_should_close(self._handle, False)
-
     def wait(self, seconds: float) -> None:
         """Sleep until an event or a call of ``wake``, at most ``seconds``; then handle the events."""
         self._clicks.before_poll()

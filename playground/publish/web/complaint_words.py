@@ -83,10 +83,6 @@ def text() -> str:
     return "{\n" + ",\n".join(rows) + "\n}\n"
 
 
-def _character(code: str) -> str:
-    return chr(int(code, 16))
-
-
 def _pattern(pattern: re.Pattern[str]) -> list[str]:
     """Return a pattern as JavaScript writes it: names of groups, and case, which Python may set inside."""
     source = pattern.pattern.replace("(?P<", "(?<")
