@@ -63,6 +63,10 @@ class Wiring:
         free = next((name for name in names if name not in taken), "")
         return output if output in names else free or next(iter(names), "")
 
+    def wire_to(self, pin: Pin | None) -> Wire | None:
+        """Return the wire to an input, given as (reader, input); None for none."""
+        return next((wire for wire in self.wires if (wire.reader, wire.input) == pin), None)
+
     def moved(self, places: Mapping[str, Place]) -> Wiring:
         """Return the graph with some nodes elsewhere."""
         above = tuple(node for node in places if node in self.refs)

@@ -14,8 +14,8 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.sketch import model
 from playground.sketch.edit_passes import Wire
-from playground.sketch.model import Kernel
 from playground.studio import focus, theme
 from playground.studio.bench import Workbench
 from playground.studio.draw import button, ctrl_held, disabled, fitting, inked, letters
@@ -285,7 +285,7 @@ class GraphPanel:
     def _plus(self, lit: Wire | None, wiring: Wiring, canvas: Canvas, pins: Pins, look: Theme) -> None:
         """Draw a + in the middle of the wire under the mouse, or of the one that is chosen."""
         pin = (lit.reader, lit.input) if lit is not None else self.graph.wire
-        wire = next((w for w in wiring.wires if (w.reader, w.input) == pin), None)
+        wire = wiring.wire_to(pin)
         if wire is None or self._drag is not None or self.graph.pulled is not None:
             return
         middle, side = middle_of(wire_spans(wire, wiring, canvas, pins)), _PLUS * canvas.scale
@@ -383,7 +383,7 @@ class GraphPanel:
             elif target is None and hovers and not over and distance(start, mouse) > 3 * _NEAR * canvas.scale:
                 self._ask(giver, output)
 
-    def _say_refusal(self, giver: str, target: tuple[str, str]) -> None:
+    def _say_refusal(self, giver: str, target: Pin) -> None:
         if not target[1]:
             imgui.set_tooltip(tr("{name} takes no input", name=target[0]))
         else:
@@ -549,23 +549,19 @@ class GraphPanel:
 
     # ── what can be done ─────────────────────────────────────────────────────
 
-    def _ask(self, after: str, output: str = "") -> None:
-        """Open the chooser for a pass behind another."""
+    def _ask(self, after: str, output: str = "", on: Wire | None = None) -> None:
+        """Open the chooser for a pass behind another, or on a wire."""
         sketch = self.graph.sketch
         if sketch is not None:
             self.graph.touched = True
-            self.graph.chooser.open(sketch, "" if after == "view" else after, output)
+            self.graph.chooser.open(sketch, "" if after == "view" else after, output, on)
 
     def _ask_on(self, wire: Wire) -> None:
-        """Open the chooser for a pass on a wire."""
-        sketch = self.graph.sketch
-        if sketch is not None:
-            self.graph.touched = True
-            self.graph.chooser.open(sketch, wire.giver, wire.output, wire)
+        self._ask(wire.giver, wire.output, wire)
 
     def _add(self, wiring: Wiring) -> None:
         """Open the chooser for a pass behind the node that is chosen, or on the wire."""
-        wire = next((w for w in wiring.wires if (w.reader, w.input) == self.graph.wire), None)
+        wire = wiring.wire_to(self.graph.wire)
         if wire is not None:
             self._ask_on(wire)
         else:
@@ -573,19 +569,19 @@ class GraphPanel:
 
     def _open(self, node: str) -> None:
         """Open a node: the passes inside it, or its code."""
-        graph, sketch = self.graph, self.graph.sketch
-        technique = technique_at(sketch, node) if sketch is not None else None
-        if graph.inside is None and technique is not None and not isinstance(technique, Kernel):
+        if self.graph.inside is None and isinstance(self._technique(node), model.Graph):
             self._go_inside(node)
         else:
             self._open_code(node)
+
+    def _technique(self, node: str) -> model.Technique | None:
+        return technique_at(self.graph.sketch, node) if self.graph.sketch is not None else None
 
     def _go_inside(self, node: str | None) -> None:
         self.graph.inside, self.graph.chosen, self._fits = node, self.graph.inside or "", True
 
     def _open_code(self, node: str) -> None:
-        sketch = self.graph.sketch
-        technique = technique_at(sketch, node) if sketch is not None else None
+        technique = self._technique(node)
         if technique is None or not technique.path:
             self._bench.notices.say(tr("{name} has no code of its own", name=node))
             return
@@ -695,9 +691,7 @@ class GraphPanel:
             return
         imgui.text_disabled(node)
         ref, is_view, muted = wiring.refs[node], node == "view", node in self._bench.session.view.muted
-        sketch = self.graph.sketch
-        technique = technique_at(sketch, node) if sketch is not None else None
-        has_passes = own and technique is not None and not isinstance(technique, Kernel)
+        has_passes = own and isinstance(self._technique(node), model.Graph)
         mute = tr("No longer muted") if muted else tr("Mute")
         rows: list[_Row] = [
             ("inside", tr("Passes inside it"), tr("Enter"), has_passes, lambda: self._go_inside(node)),
@@ -720,21 +714,15 @@ class GraphPanel:
     def _draw_wire_menu(self, wiring: Wiring) -> None:
         if not imgui.begin_popup("wire menu"):
             return
-        wire = next((w for w in wiring.wires if (w.reader, w.input) == self._wire_menu), None)
+        wire = wiring.wire_to(self._wire_menu)
         if wire is None:
             imgui.close_current_popup()
         else:
             imgui.text_disabled(_wire_name(wire))
-            pin = wire.reader, wire.input
+            pin, unwire = (wire.reader, wire.input), self._bench.passes.unwire
             rows: list[_Row] = [
                 ("on", tr("Add a pass here…"), "+", True, lambda: self._ask_on(wire)),
-                (
-                    "cut",
-                    tr("Disconnect"),
-                    tr("Del"),
-                    wire.is_written,
-                    lambda: self._bench.passes.unwire(*pin),
-                ),
+                ("cut", tr("Disconnect"), tr("Del"), wire.is_written, lambda: unwire(*pin)),
             ]
             _rows("wire", rows)
             if not wire.is_written:
