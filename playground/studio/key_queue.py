@@ -19,6 +19,7 @@ import glfw
 
 from playground.studio import focus
 
+_MOUSE_POSITION = imgui.internal.InputEventType.mouse_pos.value  # of which each frame may have one
 _MODIFIER_KEYS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 _MODIFIERS = (
     (glfw.MOD_SHIFT, imgui.Key.mod_shift, glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SHIFT),
@@ -72,7 +73,8 @@ class KeyQueue:
     def feed(self) -> None:
         """Give imgui what belongs to the frame that begins: letters in a row, or one key that types none."""
         if self._rests:
-            self._rests = len(imgui.get_current_context().input_events_queue) > 0
+            left = imgui.get_current_context().input_events_queue
+            self._rests = any(event.type != _MOUSE_POSITION for event in left)
             return
         io, letters = imgui.get_io(), 0
         in_field = _is_typed()

@@ -43,10 +43,14 @@ def press(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[KeyQueue, Press]]:
     imgui.destroy_context(context)
 
 
-def frames(queue: KeyQueue) -> list[list[int]]:
-    """Draw frames until no key waits; return the keys that are pressed in each."""
+def frames(queue: KeyQueue, before: Callable[[int], None] = lambda _: None) -> list[list[int]]:
+    """Draw frames until no key waits; return the keys that are pressed in each.
+
+    ``before`` is called before each, with its number.
+    """
     seen: list[list[int]] = []
     while queue.waits or not seen or seen[-1]:
+        before(len(seen))
         queue.feed()
         imgui.new_frame()
         seen.append([key for key, named in KEYS.items() if imgui.is_key_pressed(named, repeat=False)])
@@ -86,3 +90,16 @@ def test_a_click_before_a_key_takes_no_frame_from_it(press: tuple[KeyQueue, Pres
     assert [key for frame in seen for key in frame] == [glfw.KEY_END, glfw.KEY_ENTER]
     for frame, after in pairwise(seen):
         assert not (frame and after), seen
+
+
+def test_a_mouse_that_moves_holds_up_no_key(press: tuple[KeyQueue, Press]) -> None:
+    queue, tap = press
+    keys = [glfw.KEY_END, glfw.KEY_DOWN, glfw.KEY_DOWN]
+    for key in keys:
+        tap(key)
+
+    def move(number: int) -> None:
+        for x in (700, 20 + number):  # as where it is outside, and the picture's cursor is in its place
+            imgui.get_io().add_mouse_pos_event(x, 20)
+
+    assert [key for frame in frames(queue, move) for key in frame] == keys
