@@ -4,7 +4,8 @@ The text editor asks imgui for its shortcuts in one chain. In the frame in which
 down are not asked, and imgui routes none to who did not ask in the frame before: Enter right after End does
 nothing. So a key that types no letter gets a frame, and an empty one after it. imgui itself puts off events
 of a frame, as a press after the release of the same key: the empty frame comes when it has none left. Each
-key brings the modifiers that its event carried: Ctrl+Z counts where both keys are up again before the frame.
+key brings the modifiers that its event carried: Ctrl+Z counts where both keys are up again before the frame,
+and what is pressed after that waits for the next one, or it would count as pressed with Ctrl.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ class KeyQueue:
             left = imgui.get_current_context().input_events_queue
             self._rests = any(event.type != _MOUSE_POSITION for event in left)
             return
-        io, letters = imgui.get_io(), 0
+        io, letters, let_go = imgui.get_io(), 0, False
         in_field = _is_typed()
         while self._waiting:
             first = self._waiting[0]
@@ -89,7 +90,8 @@ class KeyQueue:
             types = len(self._waiting) > 1 and isinstance(self._waiting[1], str)
             is_modifier = first.key in _MODIFIER_KEYS
             alone = first.action != glfw.RELEASE and not is_modifier and not types
-            if alone and letters:
+            self._rests = let_go and first.action != glfw.RELEASE and not in_field
+            if self._rests or (alone and letters):
                 return
             self._waiting.popleft()
             if first.action == glfw.RELEASE and first.key not in self._sent:
@@ -97,6 +99,7 @@ class KeyQueue:
             if types and in_field:
                 continue  # the letter is enough
             self._send(first, is_modifier=is_modifier)
+            let_go = let_go or (is_modifier and first.action == glfw.RELEASE)
             if alone:
                 self._rests = True
                 return

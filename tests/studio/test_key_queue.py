@@ -35,9 +35,11 @@ def press(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[KeyQueue, Press]]:
     queue = KeyQueue()
     queue.listen(None)
 
-    def press(key: int) -> None:
+    def press(key: int, letter: str = "") -> None:
         for action in (glfw.PRESS, glfw.RELEASE):
             heard["key"](None, key, 0, action, 0)
+            if letter and action == glfw.PRESS:
+                heard["char"](None, ord(letter))
 
     yield queue, press
     imgui.destroy_context(context)
@@ -103,3 +105,19 @@ def test_a_mouse_that_moves_holds_up_no_key(press: tuple[KeyQueue, Press]) -> No
             imgui.get_io().add_mouse_pos_event(x, 20)
 
     assert [key for frame in frames(queue, move) for key in frame] == keys
+
+
+def test_a_key_after_ctrl_is_not_pressed_with_it(
+    monkeypatch: pytest.MonkeyPatch, press: tuple[KeyQueue, Press]
+) -> None:
+    queue, tap = press
+    monkeypatch.setattr(glfw, "get_key_name", lambda *_: "e")
+    tap(glfw.KEY_LEFT_CONTROL)
+    tap(glfw.KEY_E, letter="e")
+    seen = []
+    while queue.waits or len(seen) < 3:
+        queue.feed()
+        imgui.new_frame()
+        seen.append((imgui.is_key_released(imgui.Key.mod_ctrl), imgui.is_key_pressed(imgui.Key.e)))
+        imgui.end_frame()
+    assert (True, False) in seen and (False, True) in seen and (True, True) not in seen
