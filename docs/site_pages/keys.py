@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from playground.studio.keys import CONTROL_KEYS, GESTURES, STEERING_KEYS, keys_by_meaning
+from playground.studio.keys import CONTROL_KEYS, CURSOR_KEYS, GESTURES, STEERING_KEYS, keys_by_meaning
 
 from .markdown import code, escaped, table
 
@@ -20,7 +20,8 @@ def page() -> str:
         (", ".join(code(name) for name in names), escaped(meaning))
         for meaning, names in keys_by_meaning().items()
     ]
-    by_focus = [(escaped(keys), escaped(meaning)) for keys, meaning in (*STEERING_KEYS, *CONTROL_KEYS)]
+    without = (*STEERING_KEYS, *CURSOR_KEYS, *CONTROL_KEYS)
+    by_focus = [(escaped(keys), escaped(meaning)) for keys, meaning in without]
     gestures = [(escaped(gesture), escaped(meaning)) for gesture, meaning in GESTURES]
     return (
         _HEAD

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack, suppress
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -36,9 +37,10 @@ from playground.studio.bench import Host, Workbench
 from playground.studio.code.editors import Opener
 from playground.studio.code.panel import draw_code, draw_questions
 from playground.studio.code.unsaved_texts import KeptTexts
-from playground.studio.compare.panel import below_bar, drag_line, paint_both
+from playground.studio.compare.panel import below_bar, paint_both
 from playground.studio.cost.panel import draw_readout
 from playground.studio.cost.readout import Readout
+from playground.studio.cursor import draw_cursor, feed
 from playground.studio.draw import Area, tooltip_waits
 from playground.studio.drops import Drops, opened_from
 from playground.studio.edits.autosave import QUIET, Autosave, memory_of
@@ -75,7 +77,7 @@ from playground.studio.settings_panel import draw_hints
 from playground.studio.start.panel import StartPanel
 from playground.studio.status import Status
 from playground.studio.trace.live import LiveTexelFile
-from playground.studio.trace.panel import act_on_picture, draw_mark, trace_tab
+from playground.studio.trace.panel import draw_mark, trace_tab
 from playground.studio.versions.panel import VersionsPanel
 from playground.studio.window import Window, WindowPlacement, wake
 
@@ -264,7 +266,7 @@ class Live:
         self._settling = _SETTLES
         self._last = time.perf_counter()
         self._reloads = session.last_reload
-        self.mouse = PictureMouse(session, self.bench.painting, self.bench.walk)
+        self.mouse = PictureMouse(self.bench)
         self.keys = PictureKeys(self.bench)
         session.engine.runner.inputs.is_live = True
         self.finite = FiniteWatch()
@@ -417,13 +419,15 @@ class Live:
         guard.run("taking in what was dropped", lambda: self.drops.take(self.place.dropped()), None)
         window.zoom = bench.interface.preferences.size
         look.choose(theme.LIGHT if bench.interface.preferences.is_light else theme.DARK)
-        window.begin()
+        full = next((a.full_screen for a in self.additions if a.full_screen is not None), None)
+        if bench.start.shown or full is not None:
+            bench.interface.cursor.leave()
+        window.begin(partial(feed, bench.interface.cursor))
         focus.begin(bench.interface.focus)
         bench.inspection.begin()
         if bench.start.shown:
             self._draw_start_page()
             return
-        full = next((a.full_screen for a in self.additions if a.full_screen is not None), None)
         if full is not None:
             self._draw_full(full)
             return
@@ -506,10 +510,7 @@ class Live:
             act_on_keys(self.bench)
 
     def _act(self, area: Area) -> None:
-        if not drag_line(self.bench.inspection.compare, area):
-            self.mouse.act(area, self.window.density)
-            if not self.bench.painting.on:
-                act_on_picture(self.bench.tracing, self.session.picture.texture, area, self.window.density)
+        self.mouse.act(area, self.window.density)
         self.bench.record(held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
 
     def _picture(self, size: tuple[int, int]) -> moderngl.Texture | None:
@@ -568,6 +569,7 @@ class Live:
         draw("the key map", lambda: draw_keymap(bench.interface, look), None)
         for addition in self.additions:
             draw(addition.name, addition.draw_over, None)
+        draw("the cursor", lambda: draw_cursor(bench.interface.cursor, session, look, area), None)
 
     def _show(self, picture: moderngl.Texture | None, area: tuple[int, int, int, int]) -> None:
         """Put the picture on the screen, under all that was drawn."""

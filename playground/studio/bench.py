@@ -22,6 +22,7 @@ from playground.studio.inspect.inspection import Inspection
 from playground.studio.interface import Interface, Panes, Preferences, Tab, WindowControls
 from playground.studio.keyframes.keyframe_edits import KeyframeEdits
 from playground.studio.land.walk import Walk
+from playground.studio.language import tr
 from playground.studio.notices import Notices
 from playground.studio.paint.painting import Painting
 from playground.studio.problems.problems import Problems
@@ -89,6 +90,7 @@ class Workbench:
 
     def _before_walk(self) -> None:
         """Put down what the mouse or the keys would be for besides; the steps so far are recorded."""
+        self.interface.cursor.leave()
         if self.painting.on:
             self.painting.toggle()
         self.undo.record()
@@ -110,6 +112,14 @@ class Workbench:
         """Open the strip at the passes, which get the keys, or close it."""
         self.inspection.graph.gets_keys = not self.panes.shows("passes")
         self.panes.toggle_strip("passes")
+
+    def toggle_cursor(self) -> None:
+        """Have keys move a cursor over the picture in the mouse's place, or no longer; a walk ends."""
+        if self.walk.on:
+            self.walk.end()
+        self.interface.cursor.toggle()
+        if self.interface.cursor.on:
+            self.notices.say(tr("arrows move the cursor, Space or Enter presses its button, Esc ends it"))
 
     def toggle_code(self) -> None:
         """Close the code pane, or open it and give it the keys."""

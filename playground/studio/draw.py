@@ -237,6 +237,21 @@ def plate(
     return corner
 
 
+def draw_cross(
+    draw: imgui.ImDrawList, middle: tuple[float, float], ink: theme.Rgb, far: float, look: Theme
+) -> None:
+    """Draw a cross that leaves its middle free; its dark edge shows it on light and on dark.
+
+    ``far``: to where its arms go, in units of scale 1.
+    """
+    near, far = 3 * look.scale, far * look.scale
+    for shade, thick in ((theme.packed((0.0, 0.0, 0.0), 0.9), 5.0), (theme.packed(ink), 2.0)):
+        for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+            start = ImVec2(middle[0] + near * dx, middle[1] + near * dy)
+            end = ImVec2(middle[0] + far * dx, middle[1] + far * dy)
+            draw.add_line(start, end, shade, thick * look.scale)
+
+
 # ── lines of the panel ────────────────────────────────────────────────────────
 
 
@@ -427,6 +442,16 @@ def left_a_field() -> bool:
 def letters() -> str:
     """Return what was typed in this frame and not taken by a field yet."""
     return "".join(chr(letter) for letter in imgui.get_io().input_queue_characters)
+
+
+def arrows() -> tuple[int, int]:
+    """Return which way arrow keys that were pressed since the last frame, or repeated, go: right, down."""
+
+    def way(on: imgui.Key, back: imgui.Key) -> int:
+        return int(imgui.is_key_pressed(on)) - int(imgui.is_key_pressed(back))
+
+    key = imgui.Key
+    return way(key.right_arrow, key.left_arrow), way(key.down_arrow, key.up_arrow)
 
 
 def ctrl_held() -> bool:

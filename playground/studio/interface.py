@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -188,6 +189,51 @@ class KeyFocus:
 
 
 @dataclass
+class PictureCursor:
+    """A cursor over the picture that keys move: it takes the mouse's place, and its left button."""
+
+    on: bool = False
+    at: tuple[float, float] = (0.5, 0.5)  # fractions of the picture, from its upper left
+    area: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)  # of the picture, in the window's units
+    texels: tuple[int, int] = (1, 1)  # that it goes through, around the picture's middle
+    spacing: float = 1.0  # [the window's units] between two of them
+    latched: bool = False  # the button stays down until it is let go
+    pressed: bool = False  # the button is to be down
+    shift: bool = False  # it was pressed together with Shift
+    is_down: bool = False  # for imgui it is
+    mouse: tuple[float, float] | None = None  # where the mouse itself was when the cursor came
+
+    @property
+    def position(self) -> tuple[float, float]:
+        """Its place in the window."""
+        x, y, wide, high = self.area
+        return x + self.at[0] * wide, y + self.at[1] * high
+
+    def step(self, across: int, down: int) -> None:
+        """Go so many texels to the right and down, to the middle of one; it stays in the picture."""
+
+        def moved(at: float, extent: float, count: int, by: int) -> float:
+            texel = math.floor((at - 0.5) * extent / self.spacing + count / 2) + by
+            return (min(max(texel, 0), count - 1) + 0.5 - count / 2) * self.spacing / extent + 0.5
+
+        _, _, wide, high = self.area
+        self.at = (
+            moved(self.at[0], wide, self.texels[0], across),
+            moved(self.at[1], high, self.texels[1], down),
+        )
+
+    def toggle(self) -> None:
+        """Take the mouse's place, or give it back."""
+        was_on = self.on
+        self.leave()
+        self.on = not was_on
+
+    def leave(self) -> None:
+        """Let the button go, and give its place back to the mouse."""
+        self.on = self.latched = self.pressed = False
+
+
+@dataclass
 class Interface:
     """What of one window's interface is shown."""
 
@@ -200,6 +246,7 @@ class Interface:
     preferences: Preferences = field(default_factory=Preferences)
     ahead: TypedAhead = field(default_factory=TypedAhead)
     focus: KeyFocus = field(default_factory=KeyFocus)
+    cursor: PictureCursor = field(default_factory=PictureCursor)
 
     def show_pass(self, name: str) -> None:
         """Show the panel, scrolled to a pass."""

@@ -16,16 +16,11 @@ from imgui_bundle import imgui
 
 from playground import rooms
 from playground.sketch.traits import traits_of
-from playground.studio import focus
+from playground.studio import cursor, focus
 from playground.studio.addition import Layer
 from playground.studio.bench import Workbench
 from playground.studio.code.panel import close_smaller, give_back_keys, stay, typing
-from playground.studio.draw import (
-    ctrl_held,
-    keeps_keys,
-    left_a_field,
-    letters,
-)
+from playground.studio.draw import arrows, ctrl_held, keeps_keys, left_a_field, letters
 from playground.studio.interface import resize
 from playground.studio.language import tr
 from playground.studio.mouse import steer
@@ -79,6 +74,8 @@ def _open(bench: Workbench) -> Iterator[Layer]:
         yield "focus", focus.hide
     for name in typing(bench.files):
         yield f"editor {name}", partial(give_back_keys, bench.files)
+    if bench.interface.cursor.on:
+        yield "cursor", bench.interface.cursor.leave
     if bench.tracing.on:
         yield "trace", bench.tracing.toggle
     if inspection.graph.has_keys:
@@ -110,6 +107,7 @@ def _close_popup(bench: Workbench) -> None:
 
 
 _K = imgui.Key
+_CURSOR = "a cursor over the picture that keys move, in the mouse's place"
 _INSPECT = "every pass's number at a pixel; Shift: of those inside, too"
 _TRACE = "every value of a texel beside the code; a click pins it, Shift: compares"
 _TOOLS = f"the brush's tool: {', '.join(TOOLS)}"
@@ -141,6 +139,7 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.r, "R", "reset the view", lambda b: b.session.drafts.set_camera(None), brief="view"),
     Key(_K.m, "M", "map from above", lambda b: b.session.toggle_map(), brief="map"),
     Key(_K.w, "W", "walk on the land: W A S D, arrows, drag, wheel", lambda b: b.walk.toggle()),
+    Key(_K.x, "X", _CURSOR, lambda b: b.toggle_cursor()),
     Key(_K.i, "I", _INSPECT, lambda b: b.inspection.inspector.toggle()),
     Key(_K.t, "T", _TRACE, lambda b: b.tracing.toggle()),
     Key(_K.a, "A", "keep this as A and compare; or no longer", lambda b: b.inspection.compare.toggle()),
@@ -270,6 +269,7 @@ def act_on_keys(bench: Workbench) -> None:
     ctrl, shift = ctrl_held(), _shift_held()
     closed_popup = _move_focus(bench)
     bench.walk.head(0.0, 0.0)
+    bench.interface.cursor.pressed = bench.interface.cursor.latched
     if imgui.is_key_down(_K.f7):
         bench.versions.hold()
     elif imgui.is_key_released(_K.f7):
@@ -313,17 +313,18 @@ def act_on_keys(bench: Workbench) -> None:
         else:
             fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
             pressed = fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key not in _ONCE)
-        if has_focus and key.key == _K.space:
-            continue  # it presses the control
+        if key.key == _K.space and (has_focus or bench.interface.cursor.on):
+            continue  # it presses the control, or the cursor's button
         walks = bench.walk.on and not ctrl and key.key in _WALK
         if pressed and not walks and (bench.painting.on or not key.brush):
             key.act(bench)
             bench.interface.preferences.use_key(key.name)
     if not (has_focus or bench.interface.keymap_shown or (bench.walk.on and not ctrl)):
         _steer(bench, ctrl=ctrl, shift=shift)
+        if bench.interface.cursor.on:
+            cursor.act(bench.interface.cursor)
 
 
-_ARROWS = {_K.left_arrow: (-1, 0), _K.right_arrow: (1, 0), _K.up_arrow: (0, -1), _K.down_arrow: (0, 1)}
 _STEP = 0.025  # of the picture's height: so far an arrow key drags the terrain, or the sun
 
 
@@ -332,10 +333,7 @@ def _steer(bench: Workbench, *, ctrl: bool, shift: bool) -> None:
     session = bench.session
     if session.sketch is None or traits_of(session.sketch).keys:
         return  # a picture that reads the keyboard reads these
-    across, down = 0, 0
-    for key, (right, low) in _ARROWS.items():
-        if imgui.is_key_pressed(key, repeat=True):
-            across, down = across + right, down + low
+    across, down = (0, 0) if bench.interface.cursor.on else arrows()
     wheel = 0 if ctrl else letters().count("+") - letters().count("-")
     if ctrl and (across or down):
         session.move_suns(across * _STEP, -down * _STEP)
@@ -386,9 +384,15 @@ STEERING_KEYS = (
     ("+, -", "nearer, farther"),
 )
 """What it does with the picture, while no control shows the focus."""
+CURSOR_KEYS = (
+    ("Arrows", "the cursor a texel on, faster while they are held; Shift: 10, Ctrl: 100"),
+    ("Space, Enter", "the cursor's button, as the mouse's left one; Enter holds it down, or lets it go"),
+)
+"""What it does while the picture's cursor is on."""
 
 _SUBJECTS = {
     "Picture": ("R", "M", "W", "A", "I", "T", "S", "C", "F4", "F11"),
+    "Cursor": ("X",),
     "Time": ("Space", ",", ".", "L", "0"),
     "Sketch and versions": (
         *("O", "Backspace, Shift+Backspace", "Ctrl+Z", "Ctrl+Shift+Z", "Ctrl+Y", "Ctrl+S", "Ctrl+V", "V"),
@@ -410,6 +414,7 @@ def keys_by_subject() -> dict[str, list[tuple[str, str]]]:
         subject = "Brush" if meaning in brush else subjects.get(names[0], "More")
         rows.setdefault(subject, []).append((", ".join(names), meaning))
     rows["Picture"] = [*STEERING_KEYS, *rows["Picture"]]
+    rows["Cursor"] += CURSOR_KEYS
     rows["Window"] = [*CONTROL_KEYS, *rows["Window"]]
     rows["Mouse"] = list(GESTURES)
     return rows
@@ -472,7 +477,8 @@ class PictureKeys:
     def act(self) -> bool:
         """Give the picture its keys of this frame; return whether none of them is for the window."""
         session, io = self.bench.session, imgui.get_io()
-        if session.sketch is None or not traits_of(session.sketch).keys or self.bench.walk.on:
+        taken = self.bench.walk.on or self.bench.interface.cursor.on
+        if session.sketch is None or not traits_of(session.sketch).keys or taken:
             self.has_keyboard = False
             session.hold_keys(())
             return False

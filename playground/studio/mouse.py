@@ -7,31 +7,39 @@ from dataclasses import dataclass
 from imgui_bundle import ImVec2, imgui
 
 from playground.studio import theme
+from playground.studio.bench import Workbench
+from playground.studio.compare.panel import drag_line
 from playground.studio.draw import Area
-from playground.studio.land.walk import Walk
-from playground.studio.paint.painting import Painting
 from playground.studio.picture.gestures import Gesture, divider_at, divider_position, steered_through
 from playground.studio.session import Session
+from playground.studio.trace.panel import act_on_picture
 
 _ROUND = 48  # corners of the circle that shows a brush
 
 
 @dataclass
 class PictureMouse:
-    """The mouse over one session's picture."""
+    """The mouse over one session's picture, or the cursor in its place."""
 
-    session: Session
-    painting: Painting
-    walk: Walk
+    bench: Workbench
     divider: str = ""  # the line that is held
     on_divider: bool = False  # the mouse is on a line
     strokes: bool = False  # it paints
 
     def act(self, area: Area, density: float) -> None:
         """Act on the mouse over the picture, unless the panel uses it."""
-        io, session = imgui.get_io(), self.session
+        bench = self.bench
+        if drag_line(bench.inspection.compare, area):
+            return
+        self._act(area, density)
+        if not bench.painting.on:
+            act_on_picture(bench.tracing, bench.session.picture.texture, area, density)
+
+    def _act(self, area: Area, density: float) -> None:
+        """Steer, paint, move a line of the sketch, tell the shader."""
+        io, session, walk = imgui.get_io(), self.bench.session, self.bench.walk
         if self.strokes and not imgui.is_mouse_down(0):
-            self.painting.release()
+            self.bench.painting.release()
             self.strokes = False
         if io.want_capture_mouse or session.plan is None or session.sketch is None:
             return
@@ -41,10 +49,10 @@ class PictureMouse:
             if left and (io.mouse_delta.x or io.mouse_delta.y):
                 session.move_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
             return
-        if self.walk.on:
+        if walk.on:
             if left or right:
-                self.walk.look(io.mouse_delta.x / area[3], io.mouse_delta.y / area[3])
-            self.walk.hurry(io.mouse_wheel)
+                walk.look(io.mouse_delta.x / area[3], io.mouse_delta.y / area[3])
+            walk.hurry(io.mouse_wheel)
             return
         if self._divide(io.mouse_pos.x - area[0], area[2]) or (not io.key_shift and self._paint(area)):
             left = False
@@ -66,7 +74,7 @@ class PictureMouse:
 
     def _divide(self, across: float, width: float) -> bool:
         """Move the line that is held, or grab the one under the mouse; return whether one is held."""
-        session = self.session
+        session = self.bench.session
         if session.view.map is not None or session.sketch is None:
             return False
         if imgui.is_mouse_clicked(0):
@@ -84,8 +92,8 @@ class PictureMouse:
 
     def _paint(self, area: Area) -> bool:
         """Paint while the left button is down, and show the brush; return whether it paints."""
-        painting, io = self.painting, imgui.get_io()
-        if not painting.on or not self.session.orbits:
+        painting, io = self.bench.painting, imgui.get_io()
+        if not painting.on or not self.bench.session.orbits:
             return False
         position = (io.mouse_pos.x - area[0]) / area[2], 1 - (io.mouse_pos.y - area[1]) / area[3]
         if imgui.is_mouse_clicked(0):
@@ -98,7 +106,7 @@ class PictureMouse:
 
     def _size_brush(self) -> bool:
         """Change the brush by the wheel, with Ctrl or Shift; return whether the wheel is the brush's."""
-        painting, io = self.painting, imgui.get_io()
+        painting, io = self.bench.painting, imgui.get_io()
         by = io.mouse_wheel or io.mouse_wheel_h  # with Shift, some systems turn it
         if not painting.on or not (io.key_ctrl or io.key_shift):
             return False
@@ -114,7 +122,7 @@ class PictureMouse:
         """Draw the circle that the brush covers, as it lies on the terrain."""
         corners: list[ImVec2 | tuple[int | float, int | float] | list[int | float]] = [
             ImVec2(area[0] + x * area[2], area[1] + (1 - y) * area[3])
-            for x, y in self.painting.outline(position, _ROUND)
+            for x, y in self.bench.painting.outline(position, _ROUND)
         ]
         if corners:
             draw = imgui.get_background_draw_list()

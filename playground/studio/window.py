@@ -223,13 +223,17 @@ class Window:
         self._clicks.after_poll()
         after_events()
 
-    def begin(self) -> None:
-        """Begin a frame of the interface."""
+    def begin(self, point: Callable[[tuple[float, float]], None] = lambda _: None) -> None:
+        """Begin a frame of the interface.
+
+        ``point`` receives the mouse's place, and may give imgui another.
+        """
         self.theme.rescale(self.scale * self.zoom)
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
         io, longest = imgui.get_io(), self._clicks.double_click_time()
         io.mouse_double_click_time, io.mouse_single_click_delay = longest, longest + 0.25
+        point(glfw.get_cursor_pos(self._handle))
         self.keys.feed()
         imgui.new_frame()
         if imgui.is_mouse_clicked(0):

@@ -14,10 +14,12 @@ from playground.studio import focus
 from playground.studio.bench import Workbench
 from playground.studio.code.panel import draw_code, draw_questions
 from playground.studio.code.unsaved_texts import KeptTexts
+from playground.studio.cursor import draw_cursor, feed
 from playground.studio.drops import Drops
 from playground.studio.interface import Preferences, WindowControls
 from playground.studio.keymap_panel import draw_keymap
 from playground.studio.keys import act_on_keys
+from playground.studio.mouse import PictureMouse
 from playground.studio.overlay import draw_drops, draw_inspection
 from playground.studio.panel.panel import Panel
 from playground.studio.panes import PaneLayout, draw_pane
@@ -66,6 +68,8 @@ class Bare:
         for name in WIDGETS:
             self.watch(imgui, name)
         self.clipboard = ""
+        self.mouse_at = 0.0, 0.0  # that the window reports
+        self.frame_size = 48, 32
         imgui.get_platform_io().platform_set_clipboard_text_fn = self._copied
         self.quits = False
         self.run_frames(3)
@@ -102,14 +106,15 @@ class Bare:
         for _ in range(count):
             self.time += step
             imgui.get_io().delta_time = step
-            self.picture = self.session.frame((48, 32))
+            self.picture = self.session.frame(self.frame_size)
+            feed(self.bench.interface.cursor, self.mouse_at)
             imgui.new_frame()
             focus.begin(self.bench.interface.focus)
             if around is None:
                 self.draw()
             else:
                 around(self.draw)
-            act_on_keys(self.bench)
+            self.act()
             self.bench.record(held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
             self.bench.take_notes()
             imgui.render()
@@ -175,9 +180,15 @@ class Bare:
             places = self.panes.place(left, self.bench.tabs, self.theme)
             self.panes.draw_strip(places, self.bench.tabs, self.theme)
             area = places.picture
-        draw_inspection(self.bench, self.picture, self.theme, area, 48 / area[2])
+        self.area = area
+        draw_inspection(self.bench, self.picture, self.theme, area, self.frame_size[0] / area[2])
+        draw_cursor(self.bench.interface.cursor, self.session, self.theme, area)
         draw_drops(self.drops, self.theme)
         draw_keymap(self.bench.interface, self.theme)
+
+    def act(self) -> None:
+        """Act on the keys."""
+        act_on_keys(self.bench)
 
     def draw_pane(self, area: tuple[float, float, float, float] = (780.0, 0.0, 500.0, 720.0)) -> None:
         """Draw the code pane at a place, and the question on a file that is to be closed."""
@@ -192,6 +203,23 @@ class Bare:
         self.bench.inspection.release()
         self.session.release()
         imgui.destroy_context(self.context)
+
+
+class PictureDesk(Bare):
+    """A panel beside a picture as large as its place, and what reads the mouse over it."""
+
+    def __init__(self, engine: Engine, path: Path) -> None:
+        super().__init__(engine, path, (740, 300))
+        self.hand = PictureMouse(self.bench)
+        self.frame_size = int(self.area[2]), int(self.area[3])
+        self.run_frames(3)
+
+    def act(self) -> None:
+        """Act on the keys, then on the mouse over the picture."""
+        super().act()
+        if self.frame_size[0] == self.area[2]:
+            self.hand.act(self.area, 1.0)
+            self.bench.tracing.update(self.picture)
 
 
 OpenBare = Callable[..., Bare]

@@ -1,8 +1,13 @@
-"""The keyboard alone: where Tab goes, what Space, Enter and arrows do there, how Esc gives the keys back."""
+"""The keyboard alone: where Tab goes, what Space, Enter and arrows do there, how Esc gives the keys back.
+
+And the picture's cursor, which keys move and press in the mouse's place.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -13,13 +18,14 @@ from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
 from playground.studio import focus, keys
 from playground.studio.code.panel import draw_code, draw_questions, typing
+from playground.studio.compare.compare import Mode
 from playground.studio.graph.panel import passes_tab
 from playground.studio.interface import Tab
 from playground.studio.panes import draw_pane
 from playground.studio.theme import Theme
 
 from ..sketch_texts import map_of, passes
-from .panel_desk import Bare, OpenBare
+from .panel_desk import Bare, OpenBare, PictureDesk
 from .screen import HILLS
 
 K = imgui.Key
@@ -251,3 +257,126 @@ def test_a_step_of_the_history_is_chosen_by_keys(desk: Desk) -> None:
     desk.key(K.enter)
     desk.run_frames(3)
     assert desk.value("level") == 0.5
+
+
+# ── the picture's cursor ──────────────────────────────────────────────────────
+
+COLUMNS = """// terrain.glsl -- each texel by its place
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) {
+    float row = 100.0 * float(texel.y);
+    return row + float(texel.x);
+}
+"""
+MAP = "format = 1\nsize = 33\n" + passes(height="./terrain") + map_of("height")
+
+
+DeskOn = Callable[[str], PictureDesk]
+
+
+@pytest.fixture
+def desk_on(any_engine: Engine, tmp_path: Path) -> Iterator[DeskOn]:
+    """Give what opens a desk on a sketch's text."""
+    with ExitStack() as stack:
+
+        def opened(sketch: str) -> PictureDesk:
+            (tmp_path / "sketch.toml").write_text(sketch, encoding="utf-8")
+            (tmp_path / "terrain.glsl").write_text(COLUMNS, encoding="utf-8")
+            return stack.enter_context(closing(PictureDesk(any_engine, tmp_path)))
+
+        yield opened
+
+
+def texel(desk: PictureDesk) -> tuple[int, int]:
+    """Return the texel that the box of values reads: its number says the same place."""
+    mouse, inspector = imgui.get_io().mouse_pos, desk.bench.inspection.inspector
+    pixel = int(mouse.x - desk.area[0]), int(desk.area[3] - 1 - mouse.y)
+    reads, report = inspector.reads, inspector.at(pixel, desk.picture)
+    assert report is not None and report.shown is not None and inspector.reads == reads
+    assert report.shown.values[0] == 100 * report.shown.texel[1] + report.shown.texel[0]
+    return report.shown.texel
+
+
+def test_keys_read_pin_and_trace_a_texel(desk_on: DeskOn) -> None:
+    desk = desk_on(MAP)
+    desk.session.show("height:height")
+    tracing, inspector = desk.bench.tracing, desk.bench.inspection.inspector
+    desk.key(K.i)
+    desk.key(K.x)
+    desk.run_frames(3)
+    assert inspector.reads and texel(desk) == (16, 16), "it begins in the middle"
+    desk.key(K.right_arrow)
+    desk.key(K.right_arrow)
+    desk.key(K.up_arrow)
+    desk.run_frames(2)
+    assert texel(desk) == (18, 17)
+    desk.key(K.mod_shift, K.left_arrow)
+    desk.run_frames(2)
+    assert texel(desk) == (8, 17)
+    desk.key(K.mod_ctrl, K.down_arrow)
+    desk.run_frames(2)
+    assert texel(desk) == (8, 0), "it stays on the land"
+    tracing.now = lambda: 10 * desk.time  # two traces are some time apart
+    desk.key(K.t)
+    desk.run_frames(3)
+    assert tracing.on and tracing.view is not None and tracing.view.trace.texel == (8, 0)
+    playing = desk.session.clock.playing
+    desk.key(K.space)
+    desk.run_frames(3)
+    assert tracing.is_pinned and desk.session.clock.playing == playing
+    desk.key(K.up_arrow)
+    desk.run_frames(3)
+    assert tracing.view.trace.texel == (8, 0) and texel(desk) == (8, 1)
+    desk.key(K.mod_shift, K.space)
+    desk.run_frames(3)
+    assert tracing.view.trace.texel == (8, 1)
+    assert tracing.compared.kept is not None and tracing.compared.kept.texel == (8, 0)
+    desk.key(K.escape)
+    desk.run_frames(2)
+    assert not desk.bench.interface.cursor.on and tracing.on
+    assert tuple(imgui.get_io().mouse_pos) == desk.mouse_at
+
+
+def test_keys_drag_the_line_between_two_pictures(desk_on: DeskOn) -> None:
+    desk = desk_on(MAP)
+    compare = desk.bench.inspection.compare
+    desk.key(K.a)
+    desk.key(K.x)
+    desk.run_frames(2)
+    assert compare.mode is Mode.DIVIDER and compare.split == 0.5
+    desk.key(K.enter)
+    desk.key(K.mod_shift, K.right_arrow)
+    desk.key(K.enter)
+    desk.run_frames(2)
+    moved = compare.split
+    assert moved == pytest.approx(0.5 + 10 / desk.area[2], abs=1 / desk.area[2])
+    desk.key(K.right_arrow)
+    desk.run_frames(2)
+    assert compare.split == moved and compare.on
+
+
+def test_a_mouse_that_moves_ends_the_cursor(desk_on: DeskOn) -> None:
+    desk = desk_on(MAP)
+    desk.key(K.x)
+    desk.key(K.enter)
+    assert imgui.is_mouse_down(0)
+    desk.mouse_at = 3.0, 4.0  # only touched
+    desk.run_frames(2)
+    assert desk.bench.interface.cursor.on
+    desk.mouse_at = 40.0, 50.0
+    desk.run_frames(3)
+    assert not desk.bench.interface.cursor.on and not imgui.is_mouse_down(0)
+    assert tuple(imgui.get_io().mouse_pos) == desk.mouse_at
+
+
+def test_an_arrow_that_is_held_grows_faster(desk_on: DeskOn) -> None:
+    desk = desk_on(HILLS)
+    desk.key(K.x)
+    imgui.get_io().add_key_event(K.right_arrow, True)
+    places = [desk.bench.interface.cursor.position[0]]
+    for _ in range(3):
+        desk.run_frames(30)
+        places.append(desk.bench.interface.cursor.position[0])
+    steps = [b - a for a, b in pairwise(places)]
+    assert 0 < steps[0] < steps[1] < steps[2]
+    assert places[-1] < desk.area[0] + desk.area[2]

@@ -12,6 +12,7 @@ import pytest
 
 from playground.paths import NAME
 
+from ..sketch_texts import passes, use
 from .screen import LIMIT, ON_LINUX, Program, Screen
 
 pytestmark = [*ON_LINUX, pytest.mark.slow]
@@ -35,19 +36,33 @@ for name in ("button", "small_button", "checkbox", "begin_combo", "slider_float"
              "collapsing_header", "radio_button", "invisible_button", "input_text_with_hint",
              "begin_tab_item", "menu_item_simple", "selectable", "text_link", "tree_node_ex"):
     setattr(imgui, name, noting(getattr(imgui, name)))
-sys.exit(run("", size=(1280, 720), start_page=True, time_limit=600))
+sketch = "".join(sys.argv[1:])
+sys.exit(run(sketch, size=(1280, 720), start_page=not sketch, time_limit=600))
 """
+PAINTED = (
+    'format = 1\nsize = 65\nextent = 1000.0\nrelief = 200.0\nmain = ["height.amount"]\n'
+    + passes(
+        hills="generation/layered_noise",
+        height=use("generation/sculpted", inputs={"height": "hills"}),
+        light="lighting/l_dot_n",
+    )
+    + '[view]\nuse = "view/terrain"\nsamples = 1\n'
+    + "camera = { azimuth = 180, elevation = 89, distance = 900 }\n"
+)
 
 
 class Keyboard(Program):
     """The window, and what a person does who has no mouse."""
 
-    def __init__(self, screen: Screen, folder: Path) -> None:
+    def __init__(self, screen: Screen, folder: Path, sketch: str = "") -> None:
         self.folder = folder / "work"
         self.folder.mkdir()
         command = [sys.executable, "-c", RUN]
+        if sketch:
+            (self.folder / "sketch.toml").write_text(sketch, encoding="utf-8")
+            command.append("sketch.toml")
         super().__init__(screen, folder, command, self.folder, code=True, strip=True)
-        self.wait(lambda now: "start page" in now["layers"] and now["takes_text"])
+        screen.do("mousemove", SCREEN[0] - 1, SCREEN[1] - 1)  # it stays in the corner
 
     def press(self, *keys: str) -> None:
         for key in keys:
@@ -69,6 +84,15 @@ class Keyboard(Program):
                 return
         pytest.fail(f"Tab never comes to {to}; {self.now()}")
 
+    def settled(self) -> str:
+        """Return the picture's hash, once none was drawn for a while: the first may be a preview."""
+        now, since = self.now(), time.monotonic()
+        while time.monotonic() < since + 1.5:
+            time.sleep(0.05)
+            if self.now()["draws"] != now["draws"]:
+                now, since = self.now(), time.monotonic()
+        return str(now["picture"])
+
     def remembered(self, name: str) -> object:
         file = self.folder.parent / "state" / NAME / "interface.json"
         return json.loads(file.read_text("utf-8")).get(name)
@@ -77,7 +101,7 @@ class Keyboard(Program):
 @pytest.fixture
 def window(screen: Screen, tmp_path: Path) -> Iterator[Keyboard]:
     made = Keyboard(screen, tmp_path)
-    screen.do("mousemove", SCREEN[0] - 1, SCREEN[1] - 1)  # it stays in the corner
+    made.wait(lambda now: "start page" in now["layers"] and now["takes_text"])
     yield made
     made.close()
 
@@ -128,3 +152,41 @@ def test_a_whole_round_without_a_mouse(window: Keyboard) -> None:
     window.wait(lambda now: "start page" in now["layers"])
     window.press("ctrl+q")
     assert window.ended() == 0, window.complaint()
+
+
+@pytest.fixture
+def painted(screen: Screen, tmp_path: Path) -> Iterator[Keyboard]:
+    made = Keyboard(screen, tmp_path, PAINTED)
+    made.wait(lambda now: now["draws"] > 0 and now["stage"] == "NONE")
+    yield made
+    made.close()
+
+
+def test_the_picture_without_a_mouse(painted: Keyboard) -> None:
+    window, screen = painted, painted.screen
+
+    def traced() -> list[int]:
+        texel: list[int] = window.now()["trace"].get("texel", [])
+        return texel
+
+    window.press("x", "b")
+    window.wait(lambda now: {"cursor", "brush"} <= set(now["layers"]))
+    bare = window.settled()
+    screen.do("keydown", "space")
+    window.wait(lambda now: now["picture"] != bare and "height.image" in now["edited"])
+    window.press("shift+Left", "shift+Left", "Left")
+    screen.do("keyup", "space")
+    window.press("ctrl+z")
+    window.wait(lambda now: now["picture"] == bare)
+    window.press("b", "t")
+    window.wait(lambda now: traced())
+    middle = traced()
+    window.press("shift+Right")
+    window.wait(lambda now: traced() == [middle[0] + 10, middle[1]])
+    window.press("space", "Down", "i")
+    window.wait(lambda now: "inspector" in now["layers"])
+    assert traced() == [middle[0] + 10, middle[1]], "it is pinned"
+    window.press("shift+space")
+    window.wait(lambda now: traced() == [middle[0] + 10, middle[1] - 1])
+    window.press("Escape", "Escape", "Escape")
+    window.wait(lambda now: not now["layers"])

@@ -173,7 +173,7 @@ def test_a_drag_begins_where_the_keyframes_left_the_camera(bare: Bare) -> None:
     bare.bench.undo.seek(2.0)
     bare.run_frames(2)
     assert session.plan is not None and session.plan.sketch.camera.azimuth == pytest.approx(150.0)
-    hand = PictureMouse(session, bare.bench.painting, bare.bench.walk)
+    hand = PictureMouse(bare.bench)
 
     def drag_frame(x: float, y: float, down: bool) -> None:
         io.add_mouse_pos_event(x, y)

@@ -22,7 +22,7 @@ from playground.studio.session import Session
 
 from ..loading import load
 from ..sketch_texts import passes
-from .panel_desk import Bare
+from .panel_desk import Bare, PictureDesk
 from .session_desk import OpenSession
 
 FILES = {
@@ -46,7 +46,7 @@ def act(bare: Bare, tmp_path: Path) -> Iterator[Act]:
     """Give a function that draws a frame of the picture's mouse at (700, 360)."""
     painting, io = bare.bench.painting, imgui.get_io()
     painting.folder, painting.now = tmp_path, lambda: bare.time
-    hand = PictureMouse(bare.session, painting, bare.bench.walk)
+    hand = PictureMouse(bare.bench)
 
     def frame(*, down: bool = False, wheel: float = 0.0, keys: tuple[imgui.Key, ...] = ()) -> None:
         bare.time += 0.05
@@ -130,6 +130,42 @@ def test_held_brush_paints_without_mouse_motion(bare: Bare, act: Act) -> None:
     assert painting.layer is not None and painting.layer.saved and painting.layer.can_undo
     bare.key(_K.mod_ctrl, _K.z)
     assert not painting.layer.pixels.any()
+
+
+def test_a_stroke_by_keys_is_one_step_back(any_engine: Engine, folder: Path) -> None:
+    desk = PictureDesk(any_engine, folder)
+    painting = desk.bench.painting
+    painting.folder, painting.now = folder, lambda: desk.time
+    camera = desk.session.sketch.camera if desk.session.sketch else None
+    desk.key(_K.b)
+    painting.choose("height.image")
+    desk.key(_K.x)
+    io = imgui.get_io()
+    io.add_key_event(_K.space, True)
+    desk.run_frames(3)
+    assert painting.layer is not None
+    spot = int((painting.layer.pixels > 0).sum())
+    for _ in range(3):  # Shift is for longer steps: it pans nothing meanwhile
+        desk.key(_K.mod_shift, _K.right_arrow)
+    io.add_key_event(_K.space, False)
+    desk.run_frames(3)
+    stroke = int((painting.layer.pixels > 0).sum())
+    assert stroke > spot > 0 and desk.session.sketch is not None
+    assert desk.session.sketch.camera == camera
+    desk.key(_K.right_arrow)
+    desk.run_frames(2)
+    assert int((painting.layer.pixels > 0).sum()) == stroke, "the button is up"
+    desk.key(_K.mod_ctrl, _K.z)
+    assert not painting.layer.pixels.any()
+    desk.key(_K.enter)
+    desk.key(_K.left_arrow)
+    assert painting.layer.pixels.any(), "Enter holds the button down"
+    desk.key(_K.escape)
+    desk.run_frames(2)
+    assert not imgui.is_mouse_down(0) and painting.layer.saved and painting.on
+    desk.key(_K.mod_ctrl, _K.z)
+    assert not painting.layer.pixels.any()
+    desk.close()
 
 
 # ── painting ──────────────────────────────────────────────────────────────────

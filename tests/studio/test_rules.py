@@ -15,6 +15,7 @@ STUDIO = ROOT / "studio"
 SCREEN = {"imgui_bundle", "glfw"}
 WINDOW = {
     "app",
+    "cursor",
     "draw",
     "focus",
     "guard",

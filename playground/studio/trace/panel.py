@@ -16,7 +16,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.engine.trace.probe import ProbeMap
 from playground.paths import shown
 from playground.studio import theme
-from playground.studio.draw import Area, button, choose, fitting, fitting_path, wrapped
+from playground.studio.draw import Area, button, choose, draw_cross, fitting, fitting_path, wrapped
 from playground.studio.interface import Tab
 from playground.studio.language import counted, tr
 from playground.studio.theme import Theme
@@ -301,8 +301,4 @@ def draw_mark(tracing: Tracing, look: Theme, area: Area) -> None:
     if mark is None:
         return
     x, y = area[0] + mark[0] * area[2], area[1] + (1 - mark[1]) * area[3]
-    draw, near, far = imgui.get_background_draw_list(), 3 * look.scale, 10 * look.scale
-    for ink, thick in ((theme.packed((0.0, 0.0, 0.0), 0.8), 4.0), (theme.packed(theme.DARK.warm), 2.0)):
-        for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-            start, end = ImVec2(x + near * dx, y + near * dy), ImVec2(x + far * dx, y + far * dy)
-            draw.add_line(start, end, ink, thick * look.scale)
+    draw_cross(imgui.get_background_draw_list(), (x, y), theme.DARK.warm, 10.0, look)
