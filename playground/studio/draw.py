@@ -30,6 +30,7 @@ QUIET = _F.no_saved_settings.value
 """A window that leaves nothing behind."""
 SIDE_PANEL = QUIET | _F.no_title_bar | _F.no_move | _F.no_collapse | _F.no_scrollbar
 SIDE_PANEL |= _F.no_bring_to_front_on_focus
+_PULL = 20.0  # [units of scale 1] by which a key pulls a side panel's edge
 OVERLAY = QUIET | _F.no_decoration | _F.no_move | _F.always_auto_resize | _F.no_focus_on_appearing
 """A box over the picture, as large as what is in it."""
 
@@ -75,19 +76,26 @@ def window(
 
 
 def place_side_panel(
-    width: float, limits: tuple[float, float], look: Theme, *, left: float = 0.0, beside: float
+    width: float,
+    limits: tuple[float, float],
+    look: Theme,
+    *,
+    left: float = 0.0,
+    beside: float,
+    steps: int = 0,
 ) -> float:
     """Place the next window at the left side, over the whole height; return its width if nobody pulls it.
 
     ``width``, its ``limits`` and what stays ``beside`` it at least in units of scale 1, ``left`` and the
     result in the window's. imgui cuts a size to whole pixels; so is the result, or each scale would
-    look like a pull.
+    look like a pull. Keys pull it by ``steps``.
     """
     room = imgui.get_main_viewport().size
     widest = max(room.x - left - beside * look.scale, 160.0)
     low, target, high = (float(int(min(size * look.scale, widest))) for size in (limits[0], width, limits[1]))
+    pulled = min(target + steps * _PULL * look.scale, widest)
     imgui.set_next_window_pos(ImVec2(left, 0))
-    imgui.set_next_window_size(ImVec2(target, room.y))
+    imgui.set_next_window_size(ImVec2(pulled, room.y))
     imgui.set_next_window_size_constraints(ImVec2(low, room.y), ImVec2(high, room.y))
     return target
 

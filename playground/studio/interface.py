@@ -127,6 +127,7 @@ class Panes:
     tab: str = ""  # the one that it showed last
     has_code: bool = False  # there is something to show in the code pane
     is_narrow: bool = False  # the window: the code takes the picture's place
+    stretches: tuple[str, int] = ("", 0)  # the pane that keys make larger, by so many steps
 
     def is_open(self, name: str, *, narrow: bool) -> bool:
         """Return whether "code" or "strip" is open; as delivered they are, but in a narrow window."""
@@ -154,6 +155,14 @@ class Panes:
     def shows(self, tab: str) -> bool:
         """Return whether the strip is open at a tab."""
         return self.tab == tab and self.is_open("strip", narrow=self.is_narrow)
+
+    def take_steps(self, pane: str) -> int:
+        """Return by how many steps keys make a pane larger since the last call; less than 0: smaller."""
+        name, steps = self.stretches
+        if name != pane:
+            return 0
+        self.stretches = "", 0
+        return steps
 
     def fraction(self, name: str, otherwise: float) -> float:
         """Return the part of the window that a pane takes."""

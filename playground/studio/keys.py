@@ -289,7 +289,7 @@ def act_on_keys(bench: Workbench) -> None:
         give_back_keys(bench.files)
         bench.interface.preferences.use_key("Ctrl+E")
         return
-    if keeps_keys(bench.interface.ahead) or io.want_text_input or io.key_alt:
+    if keeps_keys(bench.interface.ahead) or io.want_text_input:
         return
     if bench.inspection.graph.took_key or any(addition.has_keys for addition in bench.additions):
         return
@@ -298,6 +298,9 @@ def act_on_keys(bench: Workbench) -> None:
     if bench.start.shown:
         if imgui.is_key_pressed(_K.o, repeat=False) and not ctrl:
             bench.start.close()
+        return
+    if io.key_alt:
+        _stretch(bench)
         return
     has_focus = focus.is_shown()
     if bench.walk.on and not ctrl and not has_focus:
@@ -323,6 +326,15 @@ def act_on_keys(bench: Workbench) -> None:
         _steer(bench, ctrl=ctrl, shift=shift)
         if bench.interface.cursor.on:
             cursor.act(bench.interface.cursor)
+
+
+def _stretch(bench: Workbench) -> None:
+    """Make the pane that has the focus, or had it last, larger or smaller."""
+    sign, pane = pressed_sign(bench.window.sign_held), focus.current_pane()
+    if sign and pane:
+        bench.panes.stretches = pane, 1 if sign == "+" else -1
+    elif sign:
+        bench.notices.say(tr("no pane has the focus: Ctrl+Tab gives it to one"))
 
 
 _STEP = 0.025  # of the picture's height: so far an arrow key drags the terrain, or the sun
@@ -375,6 +387,7 @@ CONTROL_KEYS = (
     ("Ctrl+Tab, Ctrl+Shift+Tab", "the next pane, the one before"),
     ("Space, Enter", "press the control; Enter types a number, arrows move a slider that was pressed"),
     ("Menu, Shift+F10", "a parameter's menu"),
+    ("Alt++, Alt+-", "the pane with the focus larger, smaller"),
 )
 """What the keyboard does with the controls of a pane."""
 STEERING_KEYS = (

@@ -1,4 +1,6 @@
-"""Where the picture, the code beside it and the strip below them are; edges are dragged, and remembered.
+"""Where the picture, the code beside it and the strip below them are.
+
+The edges between them are dragged, or moved by keys, and remembered.
 
 The panel of parameters is at the left, over the window's whole height. What is left of the window is the
 picture, the code pane at its right, and below both the strip, whose tabs are the passes, the versions, the
@@ -25,6 +27,7 @@ NARROW = 1000.0
 _GRIP = 6.0  # [units of scale 1] that the mouse grasps of an edge
 _CODE = (0.2, 0.45, 0.8)  # fraction of the width: least, as delivered, most
 _STRIP = (0.15, 0.34, 0.7)  # of the height
+_STEP = 0.02  # fraction by which a key moves an edge
 _PANE = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize
 _PANE |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_bring_to_front_on_focus
 _PANE |= imgui.WindowFlags_.no_focus_on_appearing
@@ -52,6 +55,11 @@ class PaneLayout:
         room = imgui.get_main_viewport().size
         self._panes.is_narrow = self._is_narrow()
         wide, high = max(room.x - left, 1.0), room.y
+        for pane, name, bounds in (("code pane", "code width", _CODE), ("strip", "strip height", _STRIP)):
+            steps = self._panes.take_steps(pane)
+            if steps and not (pane == "code pane" and self._is_narrow()):
+                fraction = self._fraction(name, bounds) + steps * _STEP
+                self._panes.remember(name, _within(fraction, bounds))
         strip = (
             round(high * self._fraction("strip height", _STRIP))
             if self._panes.is_open("strip", narrow=self._is_narrow()) and tabs

@@ -380,3 +380,37 @@ def test_an_arrow_that_is_held_grows_faster(desk_on: DeskOn) -> None:
     steps = [b - a for a, b in pairwise(places)]
     assert 0 < steps[0] < steps[1] < steps[2]
     assert places[-1] < desk.area[0] + desk.area[2]
+
+
+def test_keys_move_the_edge_of_each_pane(desk: Desk) -> None:
+    desk.bench.panes.show_code()
+
+    def size(name: str) -> tuple[float, float]:
+        window = imgui.internal.find_window_by_name(name)
+        assert window is not None
+        return window.size.x, window.size.y
+
+    desk.key(K.mod_ctrl, K.tab)
+    desk.run_frames(2)
+    first = size("panel")[0]
+    desk.key(K.mod_alt, K.keypad_add)
+    desk.run_frames(2)
+    assert size("panel")[0] == first + 20 == desk.panel.width
+    for _ in range(40):
+        desk.key(K.mod_alt, K.keypad_subtract)
+    assert size("panel")[0] == 240, "no narrower than the mouse makes it"
+    chosen, high = desk.bench.interface.preferences.panes, size("strip")[1]
+    desk.key(K.mod_ctrl, K.tab)
+    desk.key(K.mod_alt, K.keypad_add)
+    desk.run_frames(2)
+    assert desk.bench.interface.preferences.panes == {**chosen, "code width": pytest.approx(0.47)}
+    desk.key(K.mod_ctrl, K.tab)
+    desk.key(K.mod_alt, K.keypad_subtract)
+    desk.run_frames(2)
+    assert size("strip")[1] == pytest.approx(high - 0.02 * 720, abs=1)
+    assert desk.bench.interface.preferences.panes["strip height"] == pytest.approx(0.32)
+    imgui.get_io().add_mouse_pos_event(600, 100)  # the picture
+    desk.press(True)
+    desk.press(False)
+    desk.key(K.mod_alt, K.keypad_subtract)
+    assert any("Ctrl+Tab" in notice.text for notice in desk.bench.notices.items)

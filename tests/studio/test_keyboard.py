@@ -162,12 +162,17 @@ def painted(screen: Screen, tmp_path: Path) -> Iterator[Keyboard]:
     made.close()
 
 
-def test_the_picture_without_a_mouse(painted: Keyboard) -> None:
+def test_the_picture_and_the_edges_without_a_mouse(painted: Keyboard) -> None:
     window, screen = painted, painted.screen
 
     def traced() -> list[int]:
         texel: list[int] = window.now()["trace"].get("texel", [])
         return texel
+
+    def edge() -> int:
+        """Return where the panel's ground ends in a row above its first line."""
+        row = screen.pixels()[5, 5:]
+        return int((row != row[0]).any(axis=1).argmax())
 
     window.press("x", "b")
     window.wait(lambda now: {"cursor", "brush"} <= set(now["layers"]))
@@ -190,3 +195,14 @@ def test_the_picture_without_a_mouse(painted: Keyboard) -> None:
     window.wait(lambda now: traced() == [middle[0] + 10, middle[1] - 1])
     window.press("Escape", "Escape", "Escape")
     window.wait(lambda now: not now["layers"])
+
+    first = edge()
+    window.press("ctrl+Tab", "alt+KP_Add", "alt+KP_Add", "ctrl+Tab", "alt+KP_Subtract")
+    window.press("ctrl+Tab", "alt+KP_Add")
+    end = time.monotonic() + LIMIT
+    panes: dict[str, float] = {}
+    while "strip height" not in panes and time.monotonic() < end:
+        time.sleep(0.05)
+        panes = window.remembered("panes")  # type: ignore[assignment]
+    assert panes["code width"] == pytest.approx(0.43) and panes["strip height"] == pytest.approx(0.36)
+    assert edge() == first + 40

@@ -657,8 +657,9 @@ class LessonPanel:
                 lambda to: follow(reader, to),
                 lambda to: link_text(reader, to),
             )
-        limits = MIN_WIDTH, MAX_WIDTH
-        target = place_side_panel(reader.progress.width, limits, look, beside=_MIN_PICTURE_WIDTH)
+        limits, steps = (MIN_WIDTH, MAX_WIDTH), reader.bench.panes.take_steps("lesson")
+        beside = _MIN_PICTURE_WIDTH
+        target = place_side_panel(reader.progress.width, limits, look, beside=beside, steps=steps)
         with window("lesson", SIDE_PANEL, ground=theme.colour(theme.palette.ground)):
             page = Page(reader, lesson, look, self._texts, self.memory, self._textures_of(reader), present)
             _head(page)

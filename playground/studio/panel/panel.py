@@ -83,7 +83,8 @@ class Panel:
         ``left``: what is taken there already.
         """
         room = imgui.get_main_viewport().size
-        target = place_side_panel(self.width, (240, 620), look, left=left, beside=160)
+        steps = bench.panes.take_steps("panel")
+        target = place_side_panel(self.width, (240, 620), look, left=left, beside=160, steps=steps)
         imgui.begin("panel", None, SIDE_PANEL)
         if bench.interface.searching and not bench.interface.keymap_shown:
             bench.interface.searching, self.memory.focus_search = False, True
