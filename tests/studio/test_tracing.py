@@ -380,6 +380,19 @@ def test_the_pane_draws_all_that_a_trace_may_have(open_bare: OpenBare, folder: P
     assert tracing.view.selection.calls and head is not None and head.number == 1
     bare.click("##spark", 0.0)
     assert 0 in tracing.view.selection.iterations.values()
+    rows = tracing.view.rows(str(file))
+    tracing.caret.line, tracing.caret.is_asked = next(row.number for row in rows if row.loops), True
+    bare.click("##iteration 0", 0.97)
+    (loop,) = tracing.view.rows(str(file))[tracing.caret.line - 1].loops
+    assert loop.chosen == loop.count - 1 > 0
+    bare.click("##plotted 0")
+    bare.click(loop.names[-1])
+    (loop,) = tracing.view.rows(str(file))[tracing.caret.line - 1].loops
+    assert loop.plotted == loop.names[-1] != loop.names[0]
+    tracing.caret.line, tracing.caret.is_asked = 1, True
+    bare.click("##call of line", 0.97)
+    head = tracing.view.rows(str(file))[0].head
+    assert head is not None and head.number == head.count > 1
     editor.select_region(DocPos(3, 8), DocPos(3, 11))
     bare.run_frames(2)
     assert (tracing.caret.line, tracing.probe.expression) == (4, "far")

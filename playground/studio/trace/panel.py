@@ -20,6 +20,7 @@ from playground.studio.draw import Area, button, choose, draw_cross, fitting, fi
 from playground.studio.interface import Tab
 from playground.studio.language import counted, tr
 from playground.studio.theme import Theme
+from playground.studio.trace.rows import FunctionHead, Row, TraceView
 from playground.studio.trace.tracing import Beside, Tracing
 from playground.studio.trace.values_panel import full_text
 from playground.studio.widgets import slide_whole
@@ -160,15 +161,48 @@ def _calls(tracing: Tracing) -> None:
 
 
 def _line(tracing: Tracing, look: Theme) -> None:
-    """Write all that the line of the cursor gave."""
+    """Choose what the cursor's line shows, where it begins a loop or function; write all that it gave."""
     view, caret = tracing.view, tracing.caret
     rows = view.rows(caret.file) if view is not None else ()
-    items = rows[caret.line - 1].items if 0 < caret.line <= len(rows) else ()
+    if view is None or not 0 < caret.line <= len(rows):
+        return
+    row = rows[caret.line - 1]
+    _heads(view, row)
     with look.font(look.code), wrapped():
-        for item in items:
+        for item in row.items:
             ink = theme.palette.ink if item.is_finite else theme.palette.alarm
             text = full_text(item) if item.is_finite else f"! {full_text(item)}"
             imgui.text_colored(theme.colour(ink), text)
+
+
+def _heads(view: TraceView, row: Row) -> None:
+    """Draw the sliders behind a line of the code, for who comes here by keys."""
+    wide = 13 * imgui.get_font_size()
+    for at, loop in enumerate(loop for loop in row.loops if loop.count > 1):
+        imgui.set_next_item_width(wide)
+        words = partial(_iteration_of, loop.count)
+        number = slide_whole(f"##iteration {at}", loop.chosen + 1, (1, loop.count), words)
+        if number is not None:
+            view.choose_iteration(loop, number - 1)
+        imgui.same_line()
+        imgui.set_next_item_width(wide)
+        name = choose(f"##plotted {at}", loop.plotted, loop.names, loop.plotted)
+        if name is not None:
+            view.plot(loop, name)
+    if row.head is not None and row.head.count > 1:
+        imgui.set_next_item_width(wide)
+        words = partial(_call_of, row.head)
+        number = slide_whole("##call of line", row.head.number, (1, row.head.count), words)
+        if number is not None:
+            view.choose_call(row.head.key, number - 1)
+
+
+def _iteration_of(count: int, number: int) -> str:
+    return tr("iteration {number} of {count}", number=number, count=count)
+
+
+def _call_of(head: FunctionHead, number: int) -> str:
+    return tr("{name}: call {number} of {count}", name=head.key[1], number=number, count=head.count)
 
 
 def _probe(tracing: Tracing, look: Theme) -> None:
