@@ -180,6 +180,34 @@ def test_a_pass_in_a_loop_is_traced_in_any_of_its_iterations(any_engine, folder)
     assert trace.outputs["a"] == (15.0,) == (any_engine.read(sketch, "a")[3, 3],)
 
 
+GROW = """#pragma kernel(output = "a:r32f")
+uniform sampler2D before; //! input("black")
+float kernel(ivec2 texel) {
+    float smaller = texelFetch(before, texel / 2, 0).r;
+    return smaller + float(size.x);
+}
+"""
+
+
+def test_an_iteration_has_the_size_and_the_count_of_its_own(any_engine, folder):
+    folder.kernels(grow=GROW)
+    inner = ("./grow", 'repeat = "iteration + 1"', 'size = "2 ** (iteration + 1) + iterations"')
+    fed = 'feedback = { before = "a" }'
+    folder.write("inner.toml", passes(grow=(*inner, fed)) + '[inputs]\nbefore = "grow.before"\n')
+    sketch = folder.sketch(passes(a=("./inner", "repeat = 3", fed)))
+    sides = {(n, k): 2 ** (k + 1) + n + 1 for n in range(3) for k in range(n + 1)}
+    total = 0
+    for iteration, side in sides.items():
+        trace = any_engine.trace(sketch, "a.grow", texel=(side - 1, side - 1), iteration=iteration)
+        assert trace.is_exact and trace.calls[0]["smaller"] == total
+        total += side
+        assert trace.outputs["a"] == (total,)
+    with pytest.raises(ParameterError, match="6 x 6 texels in iteration 1, 1; 0 to 5"):
+        any_engine.trace(sketch, "a.grow", texel=(6, 0), iteration=(1, 1))
+    with pytest.raises(ParameterError, match=r"iteration 1 of 'a\.grow', which has 1"):
+        any_engine.trace(sketch, "a.grow", texel=(0, 0), iteration=(0, 1))
+
+
 def test_a_loop_over_frames_goes_on_from_a_state_that_is_kept(any_engine, folder):
     sketch = folder.one(ADD, more='repeat = "frames"\nfeedback = { state = "a" }\n')
     expected = any_engine.read(sketch, "a", time=0.5)

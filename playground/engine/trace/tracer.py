@@ -200,13 +200,13 @@ class Tracer:
         """Return what one texel's run of a step of a plan recorded; see ``Engine.trace``."""
         ref = _ref(plan, path)
         step, loops = self._step(plan, ref)
-        texel = _checked_texel(step, texel)
         if not isinstance(limit, Integral) or isinstance(limit, bool) or limit < 1:
             raise ParameterError(f"limit {limit!r}: expected a whole number of values from 1")
         renderer = self._renderer
         with renderer.supposing(plan), renderer.borrowed():
             try:
                 run = self._run_of(plan, step, loops, ref, iteration)
+                texel = _checked_texel(run, texel, step.size)
                 renderer.runner.disable_draw_state()
                 return self._traced(run, texel, function, limit)
             finally:
@@ -216,7 +216,7 @@ class Tracer:
 
     def _step(self, plan: Plan, ref: Ref) -> tuple[Step, tuple[LoopStep, ...]]:
         """Return a step of a plan and the loops around it, outermost first."""
-        found = _with_loops(plan.nodes, ref.path)
+        found = _with_loops(plan.nodes, ref.path, {})
         if found is None:
             raise SketchError(f"pass '{ref.path}' does not run in sketch {plan.sketch.name}")
         step, _ = found
@@ -242,11 +242,14 @@ class Tracer:
         # Outside of loops its inputs are enough: its texel alone is drawn.
         sources = [source for _, source in step.inputs if isinstance(source, Ref)]
         record = self._record_of(plan, [ref] if loops else sources)
-        changing = [loop for loop in loops if loop.path in record.keys.changes[id(step)]]
-        counts = [loop.repeat for loop in changing]
         has_repeat = step.kernel.repeat != "1"
-        counts += [step.repeat] if has_repeat else []
-        at = _checked_iteration(step, counts, iteration)
+        names = [loop.path for loop in loops if loop.path in record.keys.changes[id(step)]]
+        repeated = names + [""] * has_repeat
+        last = _iterations(plan, step, repeated, [None] * len(repeated))
+        numbers = _iterations(plan, step, repeated, _asked_iterations(step, last, iteration))
+        at = tuple(numbers.values())
+        step, loops = _with_loops(plan.nodes, step.path, numbers) or (step, loops)
+        changing = [loop for loop in loops if loop.path in names]
         latest = self._latest
         if latest is not None and latest.plan is plan and latest.record is record:
             if (latest.run.step.path, latest.run.iteration) == (step.path, at):
@@ -288,7 +291,7 @@ class Tracer:
             self._draw(run, at[-1] if has_repeat else 0)
         elif has_repeat:
             self._go_to_iteration(run, at[-1])
-        if _is_last(at, counts) and runner.driver_for(step) == FRAGMENT and run.depth is None:
+        if numbers == last and runner.driver_for(step) == FRAGMENT and run.depth is None:
             run.result = results.get(step.path)
         return run
 
@@ -578,10 +581,14 @@ def _vertex_of(traced: Traced) -> str:
     return TRIANGLE.replace("#version 330", version)
 
 
-def _with_loops(nodes: Sequence[PlanNode], path: str) -> tuple[Step, tuple[LoopStep, ...]] | None:
+def _with_loops(
+    nodes: Sequence[PlanNode], path: str, numbers: Mapping[str, int]
+) -> tuple[Step, tuple[LoopStep, ...]] | None:
+    """Return a step and the loops around it, outermost first, in iterations by path, the last of others."""
     for node in nodes:
         if isinstance(node, LoopStep):
-            inside = _with_loops(node.body, path)
+            body = node.body_of(numbers[node.path]) if node.path in numbers else node.body
+            inside = _with_loops(body, path, numbers)
             if inside is not None:
                 return inside[0], (node, *inside[1])
         elif node.path == path:
@@ -608,45 +615,57 @@ def _wired(source: Ref | Fed | None, results: Mapping[str, Result]) -> Wired:
     return Wired(result, result.textures[source.output], source.output)
 
 
-def _checked_texel(step: Step, texel: object) -> tuple[int, int]:
-    """Return a texel inside of a step's textures, or raise ``ParameterError``."""
+def _checked_texel(run: _Run, texel: object, last_size: tuple[int, int]) -> tuple[int, int]:
+    """Return a texel inside of a run's textures, or raise ``ParameterError``."""
     sides = tuple(texel) if isinstance(texel, Sequence) and not isinstance(texel, str) else ()
     if len(sides) != 2 or not all(isinstance(n, Integral) and not isinstance(n, bool) for n in sides):
         raise ParameterError(f"texel {texel!r}: expected two whole numbers, column and row")
-    (x, y), (width, height) = (int(sides[0]), int(sides[1])), step.size
+    (x, y), (width, height) = (int(sides[0]), int(sides[1])), run.step.size
     if not (0 <= x < width and 0 <= y < height):
+        number = ", ".join(map(str, run.iteration))
+        when = f" in iteration {number}" if run.step.size != last_size else ""
         inside = f"0 to {width - 1} and 0 to {height - 1} were expected"
-        raise ParameterError(f"texel ({x}, {y}) of '{step.path}', {width} x {height} texels; {inside}")
+        raise ParameterError(
+            f"texel ({x}, {y}) of '{run.step.path}', {width} x {height} texels{when}; {inside}"
+        )
     return x, y
 
 
-def _checked_iteration(
-    step: Step, counts: Sequence[int], iteration: int | Sequence[int] | None
-) -> tuple[int, ...]:
-    """Return an iteration of each loop and repeat, the last where none is asked for."""
-    if min(counts, default=1) < 1:
-        raise ParameterError(f"pass '{step.path}' runs no iteration that could be traced")
-    last = [count - 1 for count in counts]
+def _asked_iterations(
+    step: Step, last: Mapping[str, int], iteration: int | Sequence[int] | None
+) -> list[int | None]:
+    """Return the number that is asked for of each loop and repeat, None for the last one."""
     if iteration is None:
-        return tuple(last)
-    numbers = (iteration,) if isinstance(iteration, Integral) else tuple(iteration)  # type: ignore[arg-type]
-    whole = all(isinstance(n, Integral) and not isinstance(n, bool) for n in numbers)
-    if not counts and whole and set(numbers) <= {0}:
-        return ()
-    if not whole or len(numbers) > len(counts):
-        repeats = f"it has {' x '.join(map(str, counts))} iterations" if counts else "it runs once"
+        return [None] * len(last)
+    numbers = tuple(iteration) if isinstance(iteration, Sequence) else (iteration,)
+    is_whole = all(isinstance(n, Integral) and not isinstance(n, bool) for n in numbers)
+    if not last and is_whole and set(numbers) <= {0}:
+        return []
+    if not is_whole or len(numbers) > len(last):
+        counts = " x ".join(str(number + 1) for number in last.values())
+        repeats = f"it has {counts} iterations" if last else "it runs once"
         raise ParameterError(f"iteration {iteration!r} of '{step.path}'; {repeats}")
-    at = [*last[: len(last) - len(numbers)], *map(int, numbers)]
-    for number, count in zip(at, counts, strict=True):
-        if not 0 <= number < count:
+    return [*[None] * (len(last) - len(numbers)), *map(int, numbers)]
+
+
+def _iterations(plan: Plan, step: Step, names: Sequence[str], asked: Sequence[int | None]) -> dict[str, int]:
+    """Return the iteration of each loop, by path, and of the step's own repeat: the last where none is asked.
+
+    ``names``: the loops' paths, outermost first, and "" for the repeat; in each iteration those inside may
+    have counts of their own.
+    """
+    numbers: dict[str, int] = {}
+    for name, number in zip(names, asked, strict=True):
+        step, loops = _with_loops(plan.nodes, step.path, numbers) or (step, ())
+        count = next((loop.repeat for loop in loops if loop.path == name), step.repeat)
+        if count < 1:
+            raise ParameterError(f"pass '{step.path}' runs no iteration that could be traced")
+        numbers[name] = count - 1 if number is None else number
+        if not 0 <= numbers[name] < count:
             raise ParameterError(
                 f"iteration {number} of '{step.path}', which has {count}; 0 to {count - 1} were expected"
             )
-    return tuple(at)
-
-
-def _is_last(at: Sequence[int], counts: Sequence[int]) -> bool:
-    return all(number == count - 1 for number, count in zip(at, counts, strict=True))
+    return numbers
 
 
 def _read_texel(framebuffer: moderngl.Framebuffer, kernel: Kernel, texel: tuple[int, int]) -> list[bytes]:
