@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import json
 import math
-import random
+import os
+import sys
 from pathlib import Path
+from subprocess import run
 
 import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.planner import smallest_terrain
-from playground.engine.trace.model import Trace, first_difference
-from playground.errors import ParameterError, PlaygroundError, ShaderError, SketchError
+from playground.engine.trace.model import first_difference
+from playground.errors import ParameterError, ShaderError, SketchError
 from playground.sketch.find import shipped_sketches
-from playground.sketch.model import Draw, PlainFragment, TexelKernel
 
 from ..loading import load
 from ..sketch_texts import map_of, passes
+from ..traces import traces_of
+
+ROOT = Path(__file__).resolve().parent.parent.parent
 
 f32 = np.float32
 
@@ -178,6 +182,27 @@ def test_a_pass_in_a_loop_is_traced_in_any_of_its_iterations(any_engine, folder)
         trace = any_engine.trace(sketch, "a", texel=(3, 3), iteration=number)
         assert trace.calls[0]["before"] == sum(range(number + 1)) and trace.is_exact
     assert trace.outputs["a"] == (15.0,) == (any_engine.read(sketch, "a")[3, 3],)
+
+
+TWICE = """#pragma kernel(output = "a:r32f", repeat = "2")
+uniform sampler2D state; //! input("zero")
+float kernel(ivec2 texel) {
+    float start = texelFetch(state, texel, 0).r;
+    return previous(texel) + start + 1.0;
+}
+"""
+
+
+def test_a_kernel_that_repeats_in_a_loop_has_two_iterations(any_engine, folder):
+    sketch = folder.one(TWICE, more='repeat = 3\nfeedback = { state = "a" }\n')
+    start = 0.0
+    for loop in range(3):
+        value = 0.0
+        for repeat in range(2):
+            trace = any_engine.trace(sketch, "a", texel=(2, 5), iteration=(loop, repeat))
+            value += start + 1.0
+            assert trace.calls[0]["start"] == start and trace.outputs["a"] == (value,) and trace.is_exact
+        start = value
 
 
 GROW = """#pragma kernel(output = "a:r32f")
@@ -415,38 +440,30 @@ def test_a_text_that_cannot_be_read_is_refused_at_its_line(any_engine, folder):
 
 # ── every shipped sketch ─────────────────────────────────────────────────────
 
-ROUNDED = (
-    "erosion/terraces.glsl", "generation/dunes.glsl", "generation/gradient_noise/warping.glsl",
-    "generation/gradient_noise/sum.glsl", "from_elsewhere/dunes.frag", "height_blend/ragged.glsl",
-)  # fmt: skip
-"""Kernels whose recorded sums Mesa rewrites: their last bits may differ, by 2e-5 of the value."""
-TRACED = (TexelKernel, PlainFragment, Draw)
-TEXELS = 3
-
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", shipped_sketches())
 def test_traces_of_shipped_passes_have_the_texels_bits(any_engine, name):
-    sketch = load(name)
-    sketch = sketch.with_values({"size": smallest_terrain(sketch, 65)}).with_picture(samples=1)
-    picture = any_engine.render(sketch, size=(160, 90), time=1.5).array.tobytes()
-    chance = random.Random(name)
-    for step in any_engine.plan(sketch.plainly(), (160, 90), 1.5).walk():
-        if not isinstance(step.kernel, TRACED) or not step.repeat:
-            continue
-        for _ in range(TEXELS):
-            texel = chance.randrange(step.size[0]), chance.randrange(step.size[1])
-            try:
-                trace = any_engine.trace(sketch, step.path, texel=texel, size=(160, 90), time=1.5)
-            except PlaygroundError as error:
-                assert "nothing is drawn" in str(error), step.path
-                continue
-            assert trace.is_exact or is_rounded(trace, step.kernel.path), (step.path, texel)
-    assert any_engine.render(sketch, size=(160, 90), time=1.5).array.tobytes() == picture
+    for result in traces_of(any_engine, name, texels=3, earlier=1):
+        assert not result.unequal, result
 
 
-def is_rounded(trace: Trace, path: str) -> bool:
-    """Return whether a kernel is one that Mesa rounds otherwise, and only the last bits differ."""
-    known = path.endswith(ROUNDED)
-    pairs = [(trace.outputs[name], values) for name, values in trace.texel_values.items()]
-    return known and all(np.allclose(one, other, rtol=2e-5, atol=1e-6) for one, other in pairs)
+QUICK = ("channels", "diamond_square_steps", "fluid", "value_noise_curve")
+"""Sketches whose passes softpipe draws in seconds, some of them in loops."""
+
+
+@pytest.mark.slow
+def test_traces_under_softpipe_have_the_texels_bits():
+    """It is a second implementation, of OpenGL 3.3 without compute; a process has one renderer."""
+    settings = ["--texels=2", "--earlier=1", "--side=17", "--width=32", "--values=64"]
+    command = [sys.executable, "-m", "tests.traces", "--here", *settings, *QUICK]
+    environment = os.environ | {"GALLIUM_DRIVER": "softpipe"}
+    done = run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=180)
+    assert done.returncode == 0, done.stderr
+    renderer, *rows = done.stdout.splitlines()
+    if renderer != "softpipe":
+        pytest.skip("this OpenGL has no softpipe")
+    results = [json.loads(row) for row in rows]
+    assert {result["sketch"] for result in results} == set(QUICK)
+    assert sum(result["earlier"] for result in results) >= 9
+    assert not [result for result in results if result["unequal"]]
