@@ -226,6 +226,8 @@ class Draws:
 
     def _start_from(self, step: Step, kernel: Draw, inputs: Mapping[str, Wired], surface: Surface) -> None:
         """Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing."""
+        # A copy binds again what is bound: GL_BACK, of no texture, is GL_INVALID_ENUM before OpenGL 4.
+        surface.framebuffer.use()
         wired = inputs.get("initial", Wired())
         # Of what a draw over another's pixels starts from, the depth is that draw's.
         earlier = wired.result.surface if wired.result is not None and not kernel.over else None
@@ -234,7 +236,6 @@ class Draws:
             self.ctx.copy_framebuffer(surface.framebuffer, earlier.framebuffer)
             return
         textures = started(kernel.outputs, wired)
-        surface.framebuffer.use()
         if len(surface.formats) == 1:  # what is overwritten needs no clearing
             surface.framebuffer.color_mask = (not textures,) * 4
         surface.framebuffer.clear(0, 0, 0, 0, depth=1.0)

@@ -448,7 +448,7 @@ def test_traces_of_shipped_passes_have_the_texels_bits(any_engine, name):
         assert not result.unequal, result
 
 
-QUICK = ("channels", "diamond_square_steps", "fluid", "value_noise_curve")
+QUICK = ("channels", "delaunay_flips", "diamond_square_steps", "fluid", "value_noise_curve")
 """Sketches whose passes softpipe draws in seconds, some of them in loops."""
 
 
