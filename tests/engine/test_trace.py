@@ -167,6 +167,24 @@ def test_an_iteration_reads_what_the_one_before_left(engine, folder):
         assert trace.calls[0]["before"] == before[number][9, 5]
 
 
+AT_ONCE = """#pragma kernel(output = "a:r32f", repeat = "6", at_once = "4")
+float kernel(ivec2 texel) {
+    float sum = previous(texel);
+    for (int i = iteration; i < until; i++) sum += float(i * i);
+    return sum;
+}
+"""
+
+
+def test_iterations_that_run_at_once_are_traced_up_to_one(any_engine, folder):
+    sketch = folder.one(AT_ONCE)
+    for iteration, first in ((0, 0), (2, 0), (3, 0), (4, 4), (5, 4)):
+        trace = any_engine.trace(sketch, "a", texel=(3, 3), iteration=iteration)
+        stopped = any_engine.read(sketch, "a", steps={"a": iteration + 1})[3, 3]
+        assert trace.outputs["a"] == (stopped,) == (sum(i * i for i in range(iteration + 1)),)
+        assert len(trace.loops()[0].rows) == iteration + 1 - first and trace.is_exact
+
+
 ADD = """#pragma kernel(output = "a:r32f")
 uniform sampler2D state; //! input("zero")
 float kernel(ivec2 texel) {

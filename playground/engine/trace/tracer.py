@@ -448,7 +448,8 @@ class Tracer:
             program.count(kernel.repeat, run.own_iteration, step.total, run.around)
             return
         kernels.binder.previous(kernels.binder.previous_units(program, kernel, unit), run.state)
-        at_once = min(kernels.at_once(step), max(step.repeat - run.own_iteration, 1))
+        # Of those that run at once, as many as there are up to the one that is traced.
+        at_once = run.iteration[-1] - run.own_iteration + 1 if kernel.repeat != "1" else 1
         program.count(kernel.repeat, run.own_iteration, step.total, run.around, at_once)
         program.set("k_previous_shift", 0)
         program.set("k_shift", 0)
