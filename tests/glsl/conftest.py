@@ -20,7 +20,6 @@ from ..sketch_texts import passes, toml_value, use
 
 BOTH_TEXTS = pytest.mark.parametrize("engine", ["fragment", "auto"], indirect=True)
 """For a technique that has a second text, a fast variant: both are compared with the truth."""
-TYPES = [kind + n for kind in ("uint", "int", "float") for n in ("", "2", "3", "4")]
 LETTERS = {"uint": ("u", "u4", np.uint32), "int": ("i", "i4", np.int32), "float": ("", "f4", np.float32)}
 
 
@@ -35,20 +34,48 @@ def _scalar(kind: str) -> tuple[str, int]:
     return base, int(kind[len(base) :] or 1)
 
 
+TYPES = [base + n for base in LETTERS for n in ("", "2", "3", "4")]
+RESULT = np.dtype([("k_bits", "u4", 4), ("k_type", "i4")])
+
+
+def _overloads() -> str:
+    """Return GLSL of ``k_take(x)``, whose overload for the type of x writes that type and its bits."""
+    lines = ["flat out uvec4 k_bits;", "flat out int k_type;"]
+    for number, kind in enumerate(TYPES):
+        base, width = _scalar(kind)
+        values = ", ".join(["floatBitsToUint(x)" if base == "float" else "x", *["0u"] * (4 - width)])
+        lines.append(f"void k_take({_glsl(kind)} x) {{ k_type = {number}; k_bits = uvec4({values}); }}")
+    return "\n".join(lines) + "\n"
+
+
+OVERLOADS = _overloads()
+
+
 @lru_cache(maxsize=64)
 def _code(file: str) -> str:
     return read_source(GLSL / file, (GLSL,)).code
 
 
+@pytest.fixture(scope="module")
+def functions(shared_context: moderngl.Context) -> Iterator[dict[str, moderngl.Program]]:
+    """Give the programs of a file's tests by their texts: each is compiled once."""
+    made: dict[str, moderngl.Program] = {}
+    yield made
+    shared_context.__enter__()
+    for program in made.values():
+        program.release()
+
+
 @pytest.fixture
-def on_gpu(ctx: moderngl.Context) -> Iterator[Callable[..., np.ndarray]]:
+def on_gpu(
+    ctx: moderngl.Context, functions: dict[str, moderngl.Program]
+) -> Iterator[Callable[..., np.ndarray]]:
     """Give ``on_gpu(file, expression, **arrays)``: a pure GLSL expression, worked out for each element.
 
     A number or an array of one dimension is a scalar; a tuple, or an array whose last axis
     is 2 to 4 long, is a vector; the first axes are broadcast. NumPy's floats, signed and
     unsigned integers become float, int and uint. Returns float32, int32 or uint32.
     """
-    kept: list[moderngl.Program] = []
     # Transform feedback draws nothing, but wants a framebuffer that it could draw to.
     surface = ctx.simple_framebuffer((1, 1))
 
@@ -57,8 +84,10 @@ def on_gpu(ctx: moderngl.Context) -> Iterator[Callable[..., np.ndarray]]:
         count = max((len(values) for values, _ in columns.values()), default=1)
         inputs = "".join(f"in {_glsl(kind)} {name};\n" for name, (_, kind) in columns.items())
         surface.use()
-        program, result = _compiled(ctx, _code(file), inputs, expression)
-        kept.append(program)
+        text = f"#version 330\n{_code(file)}\n{inputs}{OVERLOADS}void main() {{ k_take({expression}); }}\n"
+        if text not in functions:
+            functions[text] = ctx.program(vertex_shader=text, varyings=RESULT.names)
+        program = functions[text]
         content, buffers = [], []
         for name, (values, kind) in columns.items():
             base, width = _scalar(kind)
@@ -67,20 +96,19 @@ def on_gpu(ctx: moderngl.Context) -> Iterator[Callable[..., np.ndarray]]:
             buffers.append(ctx.buffer(data.tobytes()))
             if name in program:
                 content.append((buffers[-1], f"{width}{LETTERS[base][1]}", name))
-        base, width = _scalar(result)
-        target = ctx.buffer(reserve=count * width * 4)
+        target = ctx.buffer(reserve=count * RESULT.itemsize)
         vao = ctx.vertex_array(program, content)
         vao.transform(target, moderngl.POINTS, vertices=count)
-        actual = np.frombuffer(target.read(), LETTERS[base][2]).reshape(count, width)
+        rows = np.frombuffer(target.read(), RESULT)
+        base, width = _scalar(TYPES[rows["k_type"][0]])
         for item in (vao, target, *buffers):
             item.release()
-        return actual[:, 0].copy() if width == 1 else actual.copy()
+        actual = rows["k_bits"][:, :width].copy().view(LETTERS[base][2])
+        return actual[:, 0].copy() if width == 1 else actual
 
     yield evaluate
     ctx.detect_framebuffer(0).use()  # what is read next binds again what was bound before, which goes here
-    for attachment in (*surface.color_attachments, surface.depth_attachment):
-        attachment.release()
-    for item in (*kept, surface):
+    for item in (*surface.color_attachments, surface.depth_attachment, surface):
         item.release()
 
 
@@ -123,25 +151,6 @@ def _column(value: object) -> tuple[np.ndarray, str]:
     base = {"f": "float", "i": "int", "u": "uint", "b": "int"}[array.dtype.kind]
     width = array.shape[-1] if isinstance(value, tuple) or array.ndim > 1 else 1
     return np.atleast_1d(array).reshape(-1, width), base + (str(width) if width > 1 else "")
-
-
-def _compiled(ctx: moderngl.Context, code: str, inputs: str, expression: str) -> tuple[moderngl.Program, str]:
-    """Compile for the type that the expression has: GLSL 3.30 makes floats of integers, never the reverse."""
-    complaint = ""
-    for kind in TYPES:
-        text = f"#version 330\n{code}\n{inputs}{_out(kind)} k_result;\n"
-        text += f"void main() {{ k_result = {expression}; }}\n"
-        try:
-            return ctx.program(vertex_shader=text, varyings=["k_result"]), kind
-        except moderngl.Error as error:
-            complaint = str(error)
-        finally:
-            _ = ctx.error
-    raise AssertionError(f"{expression} does not compile: {complaint}")
-
-
-def _out(kind: str) -> str:
-    return ("out " if kind.startswith("float") else "flat out ") + _glsl(kind)
 
 
 @pytest.fixture
