@@ -74,6 +74,16 @@ class Browser:
         """Load a page."""
         self._ask("POST", "/url", {"url": url})
 
+    def visit(self, url: str) -> None:
+        """Load a page as a new visitor: nothing is stored or emulated, and the mouse is in a corner."""
+        self.emulate("clearDeviceMetricsOverride")
+        self.emulate("setEmulatedMedia", media="", features=[])
+        self.emulate("setScriptExecutionDisabled", value=False)
+        self.act({"type": "pointer", "id": "hand", "actions": [{"type": "pointerMove", "x": 0, "y": 0}]})
+        self.open(url)
+        self.run("localStorage.clear(); sessionStorage.clear()")
+        self.open(url)
+
     def run(self, script: str, *arguments: object) -> Any:
         """Return what a function's body returns in the page."""
         return self._ask("POST", "/execute/sync", {"script": script, "args": list(arguments)})

@@ -270,14 +270,20 @@ def lesson(make_lesson: Callable[..., Lesson]) -> Lesson:
     return make_lesson()
 
 
+def both_languages(english: Path, french: Path) -> dict[str, list[Lesson]]:
+    """Return the lesson of a file and its translation in another, as a book has them."""
+    document = read_document(english)
+    write_hashes(document, read_document(french))
+    lesson = read_file(english, SKETCHES)
+    return {"en": [lesson], "fr": [translated(lesson, document, read_document(french), "fr")]}
+
+
 @pytest.fixture
 def french(write_lesson: Callable[..., Path], tmp_path: Path) -> Lesson:
     """Give the small lesson in French."""
-    english = read_document(write_lesson())
     path = tmp_path / "petit.md"
     path.write_text(FRENCH, encoding="utf-8")
-    write_hashes(english, read_document(path))
-    return translated(read_file(english.path, SKETCHES), english, read_document(path), "fr")
+    return both_languages(write_lesson(), path)["fr"][0]
 
 
 @pytest.fixture

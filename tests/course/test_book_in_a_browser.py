@@ -13,8 +13,10 @@ from playground.course.book.live import LiveBook
 from playground.course.measures import Number
 from playground.course.read import read_lessons
 from playground.course.traces import Answer
+from playground.engine.engine import Engine
 
 from ..browser import MISSING, Browser
+from .conftest import BODY, FRENCH, FRONT, both_languages
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 
@@ -28,21 +30,30 @@ AT = "document.querySelector('#two input').value"
 LONG = "https://doi.org/" + "10.1145/358523.358553" * 4
 
 
-@pytest.fixture
-def book(tmp_path, make_lesson, french, engine):
-    folder = tmp_path / "book"
-    lesson = make_lesson(("https://doi.org/10.1145/358523.358553", LONG))
-    write_book(prepare(folder, {"en": [lesson], "fr": [french]}, gallery=False), engine)
-    return folder
+@pytest.fixture(scope="module")
+def book(tmp_path_factory, shared_context):
+    folder = tmp_path_factory.mktemp("lesson")
+    english, french = folder / "small.md", folder / "petit.md"
+    english.write_text((FRONT + BODY).replace("https://doi.org/10.1145/358523.358553", LONG), "utf-8")
+    french.write_text(FRENCH, "utf-8")
+    lessons = both_languages(english, french)
+    with Engine(shared_context) as engine:
+        write_book(prepare(folder / "book", lessons, gallery=False), engine)
+    return folder / "book"
 
 
-@pytest.fixture
-def page(book, tmp_path):
-    with Browser(tmp_path / "profile") as browser:
-        browser.open((book / "en/small.html").as_uri())
-        browser.wait("document.querySelectorAll('.controls').length === 4")
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    with Browser(tmp_path_factory.mktemp("profile")) as browser:
         yield browser
-        assert browser.log() == []
+
+
+@pytest.fixture
+def page(book, browser):
+    browser.visit((book / "en/small.html").as_uri())
+    browser.wait("document.querySelectorAll('.controls').length === 4")
+    yield browser
+    assert browser.log() == []
 
 
 def count(page, selector):
@@ -359,25 +370,25 @@ def bare_book(tmp_path, engine, monkeypatch):
     return tmp_path / "whole"
 
 
-def test_nothing_is_cut_off_on_any_page_at_any_width(bare_book, tmp_path):
+def test_nothing_is_cut_off_on_any_page_at_any_width(bare_book, browser):
+    browser.visit((bare_book / "index.html").as_uri())
     cut = []
-    with Browser(tmp_path / "profile") as browser:
-        for path in sorted(bare_book.rglob("*.html")):
-            browser.open(path.as_uri())
-            browser.run("for (const each of document.querySelectorAll('details')) each.open = true")
-            for width in (1200, 900, 390):
-                browser.emulate(
-                    "setDeviceMetricsOverride",
-                    width=width,
-                    height=900,
-                    deviceScaleFactor=1,
-                    mobile=width < 500,
-                )
-                wide, codes = browser.run(
-                    "const codes = [...document.querySelectorAll('pre')];"
-                    "return [document.documentElement.scrollWidth > innerWidth,"
-                    " codes.filter((c) => c.scrollWidth > c.clientWidth).map((c) => c.textContent)]"
-                )
-                if wide or codes:
-                    cut.append((path.parent.name, path.name, width, wide, codes))
+    for path in sorted(bare_book.rglob("*.html")):
+        browser.open(path.as_uri())
+        browser.run("for (const each of document.querySelectorAll('details')) each.open = true")
+        for width in (1200, 900, 390):
+            browser.emulate(
+                "setDeviceMetricsOverride",
+                width=width,
+                height=900,
+                deviceScaleFactor=1,
+                mobile=width < 500,
+            )
+            wide, codes = browser.run(
+                "const codes = [...document.querySelectorAll('pre')];"
+                "return [document.documentElement.scrollWidth > innerWidth,"
+                " codes.filter((c) => c.scrollWidth > c.clientWidth).map((c) => c.textContent)]"
+            )
+            if wide or codes:
+                cut.append((path.parent.name, path.name, width, wide, codes))
     assert cut == []

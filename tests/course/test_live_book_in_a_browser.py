@@ -18,16 +18,14 @@ import pytest
 from PIL import Image
 
 from playground.course.book.build import prepare, write_book
-from playground.course.document import read_document
 from playground.course.library import labels
-from playground.course.read import read_file, translated, write_hashes
 from playground.course.scenes import broken, bug_region, draw, with_value
 from playground.course.tasks import EXERCISES
 from playground.engine.engine import Engine
 
 from ..browser import MISSING, Browser
 from ..publish.web.pages import VIEW
-from .conftest import BODY, FRENCH, FRONT, SKETCHES
+from .conftest import BODY, FRENCH, FRONT, both_languages
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 
@@ -82,10 +80,7 @@ def lessons(tmp_path_factory):
         words = words.replace(ALT.format(ask), f'{ALT.format(ask)}\nalt = "Là."')
     english.write_text(FRONT + body + MATCH, encoding="utf-8")
     french.write_text(words + MATCH_FRENCH, encoding="utf-8")
-    first = read_document(english)
-    write_hashes(first, read_document(french))
-    file = read_file(english, SKETCHES)
-    return {"en": [file], "fr": [translated(file, first, read_document(french), "fr")]}
+    return both_languages(english, french)
 
 
 @pytest.fixture
@@ -101,13 +96,18 @@ def book(tmp_path_factory, lessons, shared_context):
     return folder
 
 
-@pytest.fixture
-def page(book, tmp_path) -> Iterator[Browser]:
-    with Browser(tmp_path / "profile", flags=LLVMPIPE) as browser:
-        browser.open((book / PAGE).as_uri())
-        browser.wait("document.querySelectorAll('.start').length === 9")
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory) -> Iterator[Browser]:
+    with Browser(tmp_path_factory.mktemp("profile"), flags=LLVMPIPE) as browser:
         yield browser
-        assert browser.log() == []
+
+
+@pytest.fixture
+def page(book, browser) -> Iterator[Browser]:
+    browser.visit((book / PAGE).as_uri())
+    browser.wait("document.querySelectorAll('.start').length === 9")
+    yield browser
+    assert browser.log() == []
 
 
 def start(page, name):
@@ -418,24 +418,19 @@ def test_french_and_paper_and_a_phone(page, book):
     page.emulate("setEmulatedMedia", media="")
 
 
-def test_without_scripts_everything_can_be_read(book, tmp_path):
-    with Browser(tmp_path / "profile", flags=LLVMPIPE) as browser:
-        browser.emulate("setScriptExecutionDisabled", value=True)
-        browser.open((book / PAGE).as_uri())
-        assert browser.run("return document.querySelectorAll('.start, .live').length") == 0
-        counts = (
-            "[...document.querySelectorAll('.still img')].filter((image) => image.offsetHeight > 40).length"
-        )
-        assert browser.run(f"return {counts}") == 1 + 6 + 3 + 2 + 1 + 1
-        assert "total / 8.0" in browser.run("return document.querySelector('#fault .still pre').innerText")
+def test_without_scripts_everything_can_be_read(page, book):
+    page.emulate("setScriptExecutionDisabled", value=True)
+    page.open((book / PAGE).as_uri())
+    assert page.run("return document.querySelectorAll('.start, .live').length") == 0
+    counts = "[...document.querySelectorAll('.still img')].filter((image) => image.offsetHeight > 40).length"
+    assert page.run(f"return {counts}") == 1 + 6 + 3 + 2 + 1 + 1
+    assert "total / 8.0" in page.run("return document.querySelector('#fault .still pre').innerText")
 
 
-def test_a_page_runs_nothing_but_the_book_s_scripts(book, tmp_path):
-    with Browser(tmp_path / "profile", flags=LLVMPIPE) as browser:
-        browser.open((book / PAGE).as_uri())
-        script = "const one = document.createElement('script'); one.textContent = 'globalThis.ran = 1';"
-        assert browser.run(f"{script} document.head.append(one); return globalThis.ran ?? 0") == 0
-        assert any("Content Security Policy" in line for line in browser.log())
+def test_a_page_runs_nothing_but_the_book_s_scripts(page):
+    script = "const one = document.createElement('script'); one.textContent = 'globalThis.ran = 1';"
+    assert page.run(f"{script} document.head.append(one); return globalThis.ran ?? 0") == 0
+    assert any("Content Security Policy" in line for line in page.log())
 
 
 def test_without_webgl_the_picture_stays_with_a_sentence(book, tmp_path):
