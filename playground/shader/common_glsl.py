@@ -22,6 +22,7 @@ from itertools import islice
 from pathlib import Path
 
 from playground.errors import Diagnostic
+from playground.memo import TEXTS
 from playground.paths import GLSL
 from playground.shader.conditions import WEBGL_2
 from playground.shader.kernel import ComputeVariant, CpuSource, Kernel, PlainCompute, PlainFragment
@@ -138,6 +139,7 @@ def desktop_only(kernel: Kernel) -> Iterator[Diagnostic]:
                 yield line.diagnostic(message, severity="warning")
 
 
+@TEXTS.cached()
 def lacking(code: str) -> str:
     """Return the first name in a text that GLSL ES 3.00 lacks, a function with brackets; "" if there is none.
 
