@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
+from playground.paths import GLSL
 from playground.sketch.model import Camera, kernels_of
+from playground.sketch.techniques import read_technique, shipped_techniques
 from playground.sketch.wiring import input_names
 
 from ..loading import library
@@ -292,12 +296,12 @@ float kernel(ivec2 texel) {
 
 def takers():
     """Return the light techniques that have an input for daylight."""
+    names = [name for name in shipped_techniques() if re.fullmatch("lighting/[^/]+", name)]
+    techniques = {name: read_technique(name, GLSL, GLSL) for name in names}
     return [
         name
-        for name, technique in library().items()
-        if name.startswith("lighting/")
-        and name.count("/") == 1
-        and "daylight" in input_names(technique)
+        for name, technique in techniques.items()
+        if "daylight" in input_names(technique)
         and {"sun_colour", "sky_colour", "ambient"} <= {p.name for p in technique.parameters}
     ]
 
