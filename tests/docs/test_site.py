@@ -100,33 +100,37 @@ def server(site: Path) -> Iterator[str]:
         thread.join()
 
 
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    with Browser(tmp_path_factory.mktemp("profile")) as result:
+        yield result
+
+
 @IN_A_BROWSER
 @pytest.mark.parametrize("word", ["penumbra", "pénombre"])
 @pytest.mark.parametrize("kind", ["server", "folder"])
-def test_a_word_is_found(kind: str, word: str, site: Path, server: str, tmp_path: Path):
+def test_a_word_is_found(kind: str, word: str, site: Path, server: str, browser: Browser):
     top = server if kind == "server" else site.as_uri()
-    with Browser(tmp_path / "profile") as browser:
-        browser.open(f"{top}/reference/glossary.html?q={word}")
-        browser.wait(f"{FOUND} > 0")
-        assert browser.run(ELSEWHERE) == []
+    browser.visit(f"{top}/reference/glossary.html?q={word}")
+    browser.wait(f"{FOUND} > 0")
+    assert browser.run(ELSEWHERE) == []
 
 
 @IN_A_BROWSER
 @pytest.mark.parametrize("width", [NARROW, WIDE])
-def test_no_page_is_wider_than_the_window(width: int, site: Path, server: str, tmp_path: Path):
-    with Browser(tmp_path / "profile", width) as browser:
-        browser.emulate(
-            "setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False
-        )
-        for page in (
-            "index",
-            "reference/commands",
-            "reference/configuration",
-            "reference/gallery",
-            "reference/python",
-            "reference/techniques/lighting-night",
-            "tutorials/first-kernel",
-        ):
-            browser.open(f"{server}/{page}.html")
-            assert browser.run("return document.documentElement.scrollWidth") <= width, page
-            assert browser.log() == [], page
+def test_no_page_is_wider_than_the_window(width: int, server: str, browser: Browser):
+    browser.visit(f"{server}/index.html")
+    browser.emulate("setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False)
+    browser.log()  # of the tests before
+    for page in (
+        "index",
+        "reference/commands",
+        "reference/configuration",
+        "reference/gallery",
+        "reference/python",
+        "reference/techniques/lighting-night",
+        "tutorials/first-kernel",
+    ):
+        browser.open(f"{server}/{page}.html")
+        assert browser.run("return document.documentElement.scrollWidth") <= width, page
+        assert browser.log() == [], page
