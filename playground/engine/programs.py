@@ -19,6 +19,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from playground.engine.heap import trim_heap
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.tuning import Choices, Tuning
 from playground.errors import Diagnostic, ShaderError
@@ -158,6 +159,7 @@ class Programs:
         self.write = tuning.write
         self.compile_times: dict[str, float] = {}  # [ms] of each program compiled, by file
         self.compiled = 0  # how many programs were compiled
+        self._rested = 0  # of them, when memory was last given back
         self.frame = 0  # frames begun: programs of the current one stay
         self.by_text: Memo[tuple[str, ...], Program] = Memo(
             "programs",
@@ -215,6 +217,12 @@ class Programs:
             array = program.arrays.pop(mesh, None)
             if array is not None:
                 array.release()
+
+    def rest(self) -> None:
+        """Give back what compiling has freed, once after the latest program: when nothing is to be drawn."""
+        if self._rested != self.compiled:
+            self._rested = self.compiled
+            trim_heap()
 
     def release(self) -> None:
         """Release every program."""

@@ -582,10 +582,11 @@ class Live:
             self.painter.paint(picture, window.screen, area)
 
     def _follow_up(self) -> None:
-        """Do what may wait until the frame is shown: driver warnings, the status, the rooms."""
+        """Do what may wait until the frame is shown: driver warnings, free memory, the status, the rooms."""
         is_idle = self._settling == 0 and not self.session.drafts.testing
         if is_idle:
             self.warnings.look()
+            self.session.engine.runner.programs.rest()
         self.status.write(self.bench, self.finite.non_finite)
         self.remotes.tell()
         self.guard.run("keeping versions", lambda: self._keep_versions(idle=is_idle), None)

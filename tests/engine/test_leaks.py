@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from playground.api import headless
 from playground.data.image_files import write_png
+from playground.engine import programs as programs_module
 from playground.engine.context import open_context, open_contexts, release_context
 from playground.engine.engine import Engine
 from playground.errors import ContextError
@@ -131,6 +132,20 @@ def test_a_hundred_changed_programs_are_bounded(ctx, folder, sketch, alive):
                 seen.append(total(alive))
         assert seen[0] == seen[1], "old programs go"
         assert len(engine.runner.programs) <= 65
+
+
+def test_freed_memory_is_given_back_once_after_compiling(ctx, folder, sketch, monkeypatch):
+    given_back: list[int] = []
+    with small_engine(ctx, "fragment") as engine:
+        programs = engine.runner.programs
+        monkeypatch.setattr(programs_module, "trim_heap", lambda: given_back.append(programs.compiled))
+        for i in range(3):
+            folder.write("terrain.glsl", TERRAIN.replace("sin", f"{i}.25 + sin"))
+            changed = folder.sketch(BODY, size="size = 64")
+            for bumps in (1.0, 2.0):  # another value compiles nothing
+                engine.render(changed.with_values({"height.bumps": bumps}), size=(64, 36))
+                programs.rest()
+        assert len(given_back) == 3 and given_back[-1] == programs.compiled
 
 
 @pytest.mark.slow

@@ -38,6 +38,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import IO, Any, Literal, NamedTuple
 
+from playground.engine.heap import trim_heap
 from playground.errors import PlaygroundError
 from playground.shader.kernel import Kernel
 
@@ -234,6 +235,8 @@ class Parent:
                 answer = _answered(service.answer, request)
                 _end_after(0.0)
                 self._send(answer)
+                if self._received.empty():
+                    trim_heap()
         except OSError:  # the parent is gone
             return
 

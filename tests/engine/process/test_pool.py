@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import platform
 import signal
 import subprocess
 import sys
@@ -21,7 +22,7 @@ from playground.errors import ContextError, SandboxCrash, ShaderError
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 
-Soon = Callable[[Callable[[], object]], bool]
+Soon = Callable[..., bool]
 Alive = Callable[[int], bool]
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux does this")
@@ -151,6 +152,16 @@ def test_memory_has_a_limit_and_is_not_lost(handler: str):
         assert value(pool, "hungry", 2**20) == 2**20
         assert isinstance(pool.run(("hungry", 400 * 2**20)).error, MemoryError)
         assert value(pool, "echo", 5) == 5
+
+
+@linux
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="another C library has its own ways")
+def test_a_process_at_rest_holds_no_free_memory(pool: Pool, soon: Soon):
+    size = 128 * 2**20
+    before = value(pool, "resident")
+    held = value(pool, "holes", size)
+    assert held - before > 0.9 * size, "its heap holds what is free"
+    assert soon(lambda: value(pool, "resident") - before < 0.1 * size, 10.0)
 
 
 def test_half_a_frame_is_a_crash_and_no_frame_is_quoted(pool: Pool):
