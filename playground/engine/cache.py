@@ -10,8 +10,9 @@ from playground.engine.results import Cached, Pool, Result
 # Results of any size: a driver spends memory on each texture besides its texels, so that thousands
 # of small ones, one for each save of a small sketch, would grow past any bound in bytes.
 MAX_ENTRIES = 512
-# Of one pass: whoever drags a slider leaves a version behind with every picture, and comes back to none of
-# them. Their textures are used again: to make one costs as much as to fill it (1025 x 1025: 2 ms).
+# Of one pass or loop: whoever drags a slider or types a text leaves a version behind with every picture, and
+# comes back to none of them. Their textures are used again: to make one costs as much as to fill it
+# (1025 x 1025: 2 ms).
 VERSIONS = 4
 _SHARE_OF_STATES = 4  # a quarter of the bytes may be earlier states of loops that follow the time
 
@@ -24,7 +25,7 @@ class Cache:
         # [bytes] that may be held while a frame is drawn: what the last one used stays until its textures are
         # used again, or else a terrain of which one frame needs more than the limit would make them all anew.
         self._bound = limit
-        self.versions = VERSIONS  # kept of one pass; more where many are drawn in turn
+        self.versions = VERSIONS  # kept of one pass or loop; more where many are drawn in turn
         self.states = KeptStates(limit // _SHARE_OF_STATES, pool)
         self._pool = pool
         pool.make_room = self.make_room
@@ -36,8 +37,8 @@ class Cache:
         self.hits = 0  # results that were taken from here
         self._latest: dict[str, tuple[str, str, int]] = {}
         self._read: dict[str, tuple[str, str]] = {}  # see ``note_read``
-        # Of each pass, by its path and its size: see ``Cached``.
-        self._versions: dict[tuple[str, tuple[int, int]], OrderedDict[str, None]] = {}
+        # Of each pass by its path and its size, of each loop by its path: see ``Cached``.
+        self._versions: dict[tuple[str, tuple[int, int] | None], OrderedDict[str, None]] = {}
 
     @property
     def bytes(self) -> int:
@@ -86,22 +87,24 @@ class Cache:
         """Return what is cached, without marking it as used."""
         return self._cached.get(key)
 
-    def put(self, key: str, cached: Cached) -> Cached:
-        """Cache something, used by the current frame, and return it; what is over the bounds goes."""
+    def put(self, key: str, cached: Cached, loop: str = "") -> Cached:
+        """Cache something, used by the current frame, and return it; what is over the bounds goes.
+
+        ``loop``: the path of the loop whose results these are, or will be.
+        """
         if key in self._cached:
             self.drop(key)
         self._cached[key] = cached
         self._in_use.add(key)
         self._may_grow.add(key)
         self.weigh(key)
-        if len(cached.results) == 1 and not cached.iterations:
-            ((path, result),) = cached.results.items()
-            versions = cached.versions = self._versions.setdefault((path, result.size), OrderedDict())
-            versions[key] = None
-            for old in [old for old in versions if old not in self._in_use][
-                : max(len(versions) - self.versions, 0)
-            ]:
-                self.drop(old)
+        of = (loop, None) if loop else (next(iter(cached.results)), cached.result.size)
+        versions = cached.versions = self._versions.setdefault(of, OrderedDict())
+        versions[key] = None
+        for old in [old for old in versions if old not in self._in_use][
+            : max(len(versions) - self.versions, 0)
+        ]:
+            self.drop(old)
         self.trim()
         return cached
 

@@ -294,7 +294,7 @@ class Execution:
     def _run_cached_loop(self, loop: LoopStep) -> None:
         """Run a loop from the iteration that is cached, or from an earlier one where that lies further on."""
         key, cache = self.keys.loops[loop.path], self.cache
-        cached = cache.get(key) or cache.put(key, Cached({}))
+        cached = cache.get(key) or cache.put(key, Cached({}), loop.path)
         kept = cache.states if follows_time(loop.spec.repeat) else None
         with LoopState(loop, cached, self.runner.pool, key, kept) as state:
             is_stale = state.iterations < loop.repeat

@@ -362,7 +362,7 @@ class Cached:
 
     results: dict[str, Result]  # by the pass's path
     iterations: int = 0  # done, of a loop
-    # Keys of the versions of its pass, what was used last at the end; of a loop none, which goes on in place.
+    # Keys of the versions of its pass or loop, what was used last at the end.
     versions: OrderedDict[str, None] | None = None
 
     @property

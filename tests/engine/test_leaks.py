@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from playground.api import headless
 from playground.data.image_files import write_png
 from playground.engine import programs as programs_module
+from playground.engine.cache import VERSIONS
 from playground.engine.context import open_context, open_contexts, release_context
 from playground.engine.engine import Engine
 from playground.errors import ContextError
@@ -146,6 +147,16 @@ def test_freed_memory_is_given_back_once_after_compiling(ctx, folder, sketch, mo
                 engine.render(changed.with_values({"height.bumps": bumps}), size=(64, 36))
                 programs.rest()
         assert len(given_back) == 3 and given_back[-1] == programs.compiled
+
+
+def test_texts_before_a_loop_leave_few_versions_of_it(ctx, folder, sketch):
+    with Engine(ctx) as engine:
+        seen = []
+        for i in range(4 * VERSIONS):
+            folder.write("terrain.glsl", TERRAIN.replace("sin", f"{i}.75 + sin"))
+            engine.render(folder.sketch(BODY, size="size = 64"), size=(64, 36))
+            seen.append((len(engine.cache), engine.cache.bytes, engine.runner.pool.made))
+        assert seen[-1] == seen[2 * VERSIONS], "the textures of earlier texts are used again"
 
 
 @pytest.mark.slow
