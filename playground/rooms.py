@@ -11,6 +11,7 @@ module of a fixed name:
                 ``check_request(request)`` refuses a request before a window opens. It and the folder
                 ``window`` may import the studio, whether the room needs it or not: nothing else imports them
     measures    ``MEASURES`` and ``ROWS``: what it adds to ``playground bench``
+    french.toml  the words of its windows in French, by the English ones (``playground/studio/language.py``)
     table       ``DIALECTS`` reads shaders of other tools (``playground/shader/dialect.py``)
     site        ``PAGES``: the pages that it adds to the documentation, by path; ``HOMES``: files of the
                 checkout that are pages there

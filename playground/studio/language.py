@@ -1,8 +1,8 @@
 """The window's words in the language that is chosen: ``tr("Undo")``.
 
-The English words stand in the code; ``french.toml`` has the others by them. Where a translation is missing
-the English words are shown, and a test names them. Words with numbers in them are templates, as
-``tr("reloaded in {ms} ms", ms=12)``.
+The English words stand in the code; the ``french.toml`` of this room, and that of each room with words of
+its own, has the others by them. Where a translation is missing the English words are shown, and a test names
+them. Words with numbers in them are templates, as ``tr("reloaded in {ms} ms", ms=12)``.
 """
 
 from __future__ import annotations
@@ -65,6 +65,7 @@ def shortcut(keys: str) -> str:
 
 @cache
 def _translations(code: str) -> dict[str, str]:
-    names = {"fr": "french.toml", "fr labels": "french_labels.toml"}
-    words = tomllib.loads((Path(__file__).parent / names[code]).read_text("utf-8"))
-    return {english: _NO_BREAK.sub("\u00a0", text) for english, text in words.items()}
+    names = {"fr": "*/french.toml", "fr labels": "studio/french_labels.toml"}
+    files = Path(__file__).parent.parent.glob(names[code])
+    tables = [tomllib.loads(file.read_text("utf-8")) for file in files]
+    return {english: _NO_BREAK.sub("\u00a0", text) for table in tables for english, text in table.items()}

@@ -6,7 +6,7 @@ import ast
 import re
 import string
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import pytest
 from imgui_bundle import imgui
@@ -24,7 +24,7 @@ from playground.sketch.techniques import read_technique, shipped_techniques
 from playground.studio import language
 from playground.studio.addition import Addition
 from playground.studio.compare.compare import Mode
-from playground.studio.keys import GESTURES, all_keys
+from playground.studio.keys import GESTURES, Key, all_keys
 from playground.studio.language import LANGUAGES, choose_language, counted, shortcut, tr
 from playground.studio.paint.brush import TOOLS
 from playground.studio.panel.parameter_list import Filter, filtered
@@ -36,23 +36,34 @@ from ..sketch_texts import map_of, passes
 from . import words
 from .panel_desk import Bare
 
-FILE = words.ROOT / "studio" / "french.toml"
-FRENCH: dict[str, str] = tomllib.loads(FILE.read_text("utf-8"))
-PARAMETER = words.ROOT / "shader" / "parameter.py"  # says what a parameter takes, in the window's words
+WORDS: dict[str, dict[str, str]] = {
+    path.parent.name: tomllib.loads(path.read_text("utf-8")) for path in words.ROOT.glob("*/french.toml")
+}
+"""The lines of each room that shows words; those of the studio are the window's, and may be any room's."""
+FRENCH = {english: french for lines in WORDS.values() for english, french in lines.items()}
+PARAMETER = ast.parse((words.ROOT / "shader" / "parameter.py").read_text("utf-8"))
+"""It says what a parameter takes, in the window's words."""
 
 
-def tables() -> set[str]:
-    """Return the words that stand in tables, and are translated where they are shown."""
-    found = {word for keys in all_keys() for word in words.KEY.findall(keys.name)}
-    found |= {word for key in all_keys() for word in (key.meaning, key.brief)}
-    found |= {word for gesture in GESTURES for word in gesture}
-    found |= {*TOOLS, *KINDS, WALL, QUERY, *(mode.value for mode in (*Mode, *Beside))}
-    found |= {facts.expects for facts in WIDGETS.values()}
+def of_keys(keys: Iterable[Key]) -> set[str]:
+    return {word for k in keys for word in (*words.KEY.findall(k.name), k.meaning, k.brief)}
+
+
+def tables() -> dict[str, set[str]]:
+    """Return the words that stand in tables, and are translated where they are shown, by room."""
+    found: dict[str, set[str]] = {}
+    others: set[Key] = set()
     for module in rooms.modules("addition"):
         kinds = (kind for kind in vars(module).values() if isinstance(kind, type))
         added = [kind for kind in kinds if issubclass(kind, Addition)]
-        found |= {word for kind in added for word in (kind.button, kind.button_note)}
-    return found - {""}
+        buttons = {word for kind in added for word in (kind.button, kind.button_note)}
+        found[module.__name__.split(".")[1]] = (buttons | of_keys(module.KEYS)) - {""}
+        others |= {*module.KEYS}
+    own = of_keys({*all_keys()} - others) | {word for gesture in GESTURES for word in gesture}
+    own |= {*TOOLS, *KINDS, WALL, QUERY, *(mode.value for mode in (*Mode, *Beside))}
+    own |= {facts.expects for facts in WIDGETS.values()}
+    own |= {*words.translated(PARAMETER, "say")}
+    return {**found, "studio": own - {""}}
 
 
 @pytest.fixture(autouse=True)
@@ -62,16 +73,22 @@ def in_english() -> Iterator[None]:
 
 
 def test_each_translated_word_has_a_french_line() -> None:
-    said = {word for _, tree in words.trees() for word in words.translated(tree)}
-    said |= set(words.translated(ast.parse(PARAMETER.read_text("utf-8")), "say")) | tables()
-    assert len(said) > 600
-    assert sorted(said - FRENCH.keys()) == []
+    said = tables()
+    for path, tree in words.trees():
+        said.setdefault(words.room_of(path), set()).update(words.translated(tree))
+    assert len(said["studio"]) > 600
+    lines = {room: WORDS["studio"].keys() | WORDS.get(room, {}).keys() for room in said}
+    assert {room: lacking for room in said if (lacking := sorted(said[room] - lines[room]))} == {}
 
 
-def test_no_french_line_is_left_over() -> None:
-    there = {text for _, tree in words.trees() for text in (*words.strings(tree), *words.translated(tree))}
-    there |= set(words.strings(ast.parse(PARAMETER.read_text("utf-8")))) | tables()
-    assert sorted(FRENCH.keys() - there) == []
+def test_no_french_line_is_left_over_or_is_another_room_s() -> None:
+    there = tables()
+    there["studio"].update(words.strings(PARAMETER))
+    for path, tree in words.trees():
+        texts = {*words.strings(tree), *words.translated(tree)}
+        there.setdefault(words.room_of(path), set()).update(texts)
+    assert {room: over for room in WORDS if (over := sorted(WORDS[room].keys() - there[room]))} == {}
+    assert len(FRENCH) == sum(map(len, WORDS.values())), "a line is in two files"
 
 
 def test_no_word_is_shown_as_it_stands() -> None:
@@ -243,7 +260,7 @@ def shipped_words() -> dict[str, set[str]]:
 
 def test_all_that_is_shipped_has_a_french_label() -> None:
     shipped = {kind: found - {""} for kind, found in shipped_words().items()}
-    french = tomllib.loads((FILE.parent / "french_labels.toml").read_text("utf-8"))
+    french = tomllib.loads((words.ROOT / "studio" / "french_labels.toml").read_text("utf-8"))
     lacking = {kind: sorted(found - french.keys()) for kind, found in shipped.items()}
     shares = {kind: f"{len(found) - len(lacking[kind])} of {len(found)}" for kind, found in shipped.items()}
     assert not any(lacking.values()), (shares, lacking)

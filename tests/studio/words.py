@@ -82,6 +82,11 @@ def trees() -> Iterator[tuple[Path, ast.Module]]:
         yield path, ast.parse(path.read_text("utf-8"))
 
 
+def room_of(path: Path) -> str:
+    """Return the room that a module is of."""
+    return path.relative_to(ROOT).parts[0]
+
+
 def called(call: ast.Call) -> str:
     """Return the name of the function that is called, without what it is of."""
     match call.func:
@@ -94,7 +99,7 @@ def called(call: ast.Call) -> str:
 
 def _is_of_lessons(call: ast.Call) -> bool:
     match call.func:
-        case ast.Attribute(ast.Name(owner), "say" | "label"):
+        case ast.Attribute(ast.Name(owner), "say" | "_say" | "label"):
             return owner in LESSONS
     return False
 
