@@ -22,15 +22,16 @@ from playground.allowed_files import Signature, noting_places
 from playground.engine.context import context_info, prefer_software
 from playground.engine.engine import Engine
 from playground.engine.sandbox import Sandbox, TrySketch
-from playground.errors import DataError, PlaygroundError, counted
+from playground.errors import DataError, PlaygroundError
 from playground.flight.craft import STEP, Controls, Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.record import Header, Moment, Record, Recorder
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.studio.draw import ctrl_held, letters, plate
-from playground.studio.interface import remembered_preferences
+from playground.studio.interface import Preferences, remembered_preferences
 from playground.studio.keys import pressed_sign
+from playground.studio.language import choose_language, counted, language, shortcut, tr
 from playground.studio.picture.full_screen import Painter
 from playground.studio.reload.dependencies import watched
 from playground.studio.reload.stages import Sandbox as Stage
@@ -87,7 +88,9 @@ def run(
     if software:
         prefer_software()
     with ExitStack() as stack:
-        window = stack.enter_context(Window(f"{sketch.name} – flight", size))
+        preferences = remembered_preferences()
+        choose_language(preferences.language)
+        window = stack.enter_context(Window(f"{sketch.name} – {tr('flight')}", size))
         engine = stack.enter_context(Engine(window.ctx, driver=driver, cache_bytes=CACHE_BYTES))
         header = replay.header if replay else Header(name, size, {}, radius or RADIUS)
         # A processor draws four samples in four times the time of one.
@@ -106,7 +109,7 @@ def run(
             sandbox.start()
             path = Path(flight.sketch.file)
             saves = stack.enter_context(SaveFollower(path, sketch, values or {}, sandbox, driver, wake))
-        live = Fly(window, flight, recorder, iter(replay) if replay else None, saves)
+        live = Fly(window, flight, preferences, recorder, iter(replay) if replay else None, saves)
         stack.callback(live.painter.release)
         try:
             live.run(time_limit)
@@ -122,6 +125,7 @@ class Fly:
         self,
         window: Window,
         flight: Flight,
+        preferences: Preferences,
         recorder: Recorder | None,
         replay: Iterator[Moment] | None,
         saves: SaveFollower | None = None,
@@ -132,7 +136,7 @@ class Fly:
         self.replay = replay
         self.saves = saves
         self.painter = Painter(window.ctx)
-        self.preferences = remembered_preferences()
+        self.preferences = preferences
         window.zoom = self.preferences.size
         self.instruments = Instruments(recording=recorder is not None, replaying=replay is not None)
         self.paused = False
@@ -236,7 +240,8 @@ class Fly:
             self.recorder.add(moment)
         except DataError as error:
             self.recorder, self.instruments.recording = None, False
-            self.instruments.trouble = f"no longer recorded: {error.diagnostics[0].message}"
+            why = error.diagnostics[0].message
+            self.instruments.trouble = tr("no longer recorded: {why}", why=why)
 
     # ── input ────────────────────────────────────────────────────────────────
 
@@ -318,6 +323,7 @@ class Fly:
             "paused": self.paused,
             "help": self.instruments.help,
             "zoom": self.window.zoom,
+            "language": language(),
             "hour": self.flight.hour,
             "steps": craft.steps,
             "up": craft.up,
@@ -340,18 +346,16 @@ _PRESSES: dict[imgui.Key, str] = {
     _K.p: "pause",
     _K.space: "pause",
     _K.r: "reset",
-    _K.left_bracket: "earlier",
-    _K.right_bracket: "later",
-    _K.comma: "earlier",
-    _K.period: "later",
 }
+# Their keys depend on the keyboard.
+_LETTERS = {"[": "earlier", ",": "earlier", "]": "later", ".": "later", "?": "help"}
 # GLFW's standard mapping: bumpers, back, start.
 _PAD = {4: "earlier", 5: "later", 6: "reset", 7: "pause"}
 
 
 def _pressed() -> set[str]:
     pressed = {name for key, name in _PRESSES.items() if imgui.is_key_pressed(key, repeat=False)}
-    return pressed | ({"help"} if "?" in letters() else set())  # its key depends on the keyboard
+    return pressed | {name for letter, name in _LETTERS.items() if letter in letters()}
 
 
 # ── instruments ────────────────────────────────────────────────────────────────
@@ -359,23 +363,26 @@ def _pressed() -> set[str]:
 
 _MARGIN, _PADDING = 14.0, 8.0
 _ERRORS = 6  # lines of what is wrong that are shown
-_WINDS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 
-HELP: tuple[tuple[str, str], ...] = (
-    ("S or Down,  W or Up", "nose up, nose down"),
-    ("A or Left,  D or Right", "bank left, bank right"),
-    ("Q,  E", "turn left, turn right"),
-    ("Shift,  Ctrl", "faster, slower (also Page Up, Page Down)"),
-    ("mouse, left button held", "the stick; the wheel is the throttle"),
-    ("gamepad", "left stick, right stick to turn, triggers for speed"),
-    ("[,  ]", "half an hour earlier, later (gamepad: bumpers)"),
-    ("P or Space", "pause (gamepad: Start)"),
-    ("R", "back to the start (gamepad: Back)"),
-    ("?", "this help (also F1)"),
-    ("Ctrl +,  Ctrl -,  Ctrl 0", "text larger, smaller, at its first size"),
-    ("Esc", "close this help; pause"),
-    ("Ctrl+Q", "quit, while it is paused"),
-)
+
+def help_rows() -> tuple[tuple[str, str], ...]:
+    """Return the keys of a flight and what each does, in the language that is in use."""
+    return (
+        ("S ↓   W ↑", tr("nose up, nose down")),
+        ("A ←   D →", tr("bank left, bank right")),
+        ("Q   E", tr("turn left, turn right")),
+        (shortcut("Shift   Ctrl"), tr("faster, slower (also Page Up, Page Down)")),
+        (tr("left button held"), tr("the mouse is the stick")),
+        (tr("wheel"), tr("throttle")),
+        (tr("gamepad"), tr("left stick flies, right stick turns, triggers for speed")),
+        ("[   ]   ,   .", tr("half an hour earlier, later (gamepad: bumpers)")),
+        (shortcut("P   Space"), tr("pause (gamepad: Start)")),
+        ("R", tr("back to the start (gamepad: Back)")),
+        ("?   F1", tr("this help")),
+        (shortcut("Ctrl +   Ctrl -   Ctrl 0"), tr("text larger, smaller, at its first size")),
+        (shortcut("Esc"), tr("close this help; pause")),
+        (shortcut("Ctrl+Q"), tr("quit, while paused")),
+    )
 
 
 class Instruments:
@@ -395,38 +402,41 @@ class Instruments:
         room = imgui.get_main_viewport().size
         if not ready:
             there = len(flight.parts.visible) - flight.parts.missing
-            text = f"making the terrain: {there} of {len(flight.parts.visible)} parts"
+            count = len(flight.parts.visible)
+            text = tr("making the terrain: {there} of {count} parts", there=there, count=count)
             _plate(text, theme, (room.x / 2, room.y / 2), align=(0.5, 0.5))
             return
         low = room.y - _MARGIN
         _plate(self._values(flight), theme, (_MARGIN, low), align=(0.0, 1.0))
-        state = "   ".join([*(label for label, on in self._states(paused) if on), "?  help"])
-        ink = DARK.alarm if state.startswith("end") else DARK.ink
+        state = "   ".join([*(label for label, on in self._states(paused) if on), tr("?  help")])
+        ink = DARK.alarm if self.ended or self.trouble else DARK.ink
         _plate(state, theme, (room.x - _MARGIN, low), align=(1.0, 1.0), ink=ink)
         if self.error is not None:
             self._draw_error(self.error, theme, room)
         elif self.changing:
-            _plate("taking in what was saved", theme, (room.x / 2, _MARGIN), align=(0.5, 0.5))
+            _plate(tr("making the saved terrain"), theme, (room.x / 2, _MARGIN), align=(0.5, 0.5))
         if self.help:
             self._draw_help(theme, room)
 
     def _states(self, paused: bool) -> tuple[tuple[str, bool], ...]:
         return (
             (self.trouble, bool(self.trouble)),
-            ("recording", self.recording),
-            ("end of the replay: Ctrl+Q quits", self.ended),
-            ("replay", self.replaying and not self.ended),
-            ("paused: P flies on, Ctrl+Q quits", paused and not self.ended),
+            (tr("recording"), self.recording),
+            (tr("end of the replay: Ctrl+Q quits"), self.ended),
+            (tr("replay"), self.replaying and not self.ended),
+            (tr("paused: P flies on, Ctrl+Q quits"), paused and not self.ended),
         )
 
     def _values(self, flight: Flight) -> str:
         craft = flight.craft
         degrees = round(math.degrees(craft.heading)) % 360
-        wind = _WINDS[round(degrees / 45) % 8]
+        wind = tr("N NE E SE S SW W NW").split()[round(degrees / 45) % 8]
+        speed, throttle = f"{craft.speed * 3.6:.0f}", f"{craft.throttle * 100:.0f}"
+        ground, sea = f"{flight.above_ground:.0f}", f"{flight.above_sea:.0f}"
         lines = [
-            f"{craft.speed * 3.6:4.0f} km/h   throttle {craft.throttle * 100:3.0f} %",
-            f"{flight.above_ground:4.0f} m over ground   {flight.above_sea:4.0f} m over sea",
-            f"heading {degrees:03d}° {wind}",
+            tr("{speed} km/h   throttle {throttle} %", speed=speed, throttle=throttle),
+            tr("{ground} m above ground   {sea} m above sea", ground=ground, sea=sea),
+            tr("heading {degrees}° {wind}", degrees=f"{degrees:03d}", wind=wind),
         ]
         if flight.plot.hour:
             lines[-1] += f"   {clock(flight.hour)}"
@@ -435,27 +445,28 @@ class Instruments:
     def _draw_error(self, error: PlaygroundError, theme: Theme, room: ImVec2) -> None:
         """Write the first lines of a save's error along the upper edge."""
         lines = str(error).split("\n")
-        more = f"\n… and {counted(len(lines) - _ERRORS, 'more line')}" if len(lines) > _ERRORS else ""
-        text = "\n".join(lines[:_ERRORS]) + more + "\nthe last good save is flown over"
+        shown = lines[:_ERRORS]
+        if len(lines) > _ERRORS:
+            shown.append(tr("… and {lines} more", lines=counted(len(lines) - _ERRORS, "line")))
+        text = "\n".join([*shown, tr("the flight goes on over the last good save")])
         wide = max(room.x - 2 * (_MARGIN + _PADDING), 80.0)
         _plate(text, theme, (_MARGIN, _MARGIN), ink=DARK.alarm, alpha=0.85, wrap=wide)
 
     def _draw_help(self, theme: Theme, room: ImVec2) -> None:
         with theme.font(theme.text):
             line, pad, gap = imgui.get_text_line_height() * 1.45, 18.0, 24.0
-            keys = max(imgui.calc_text_size(k).x for k, _ in HELP)
-            wide = keys + gap + max(imgui.calc_text_size(m).x for _, m in HELP) + 2 * pad
-            high = line * len(HELP) + 2 * pad
+            rows = help_rows()
+            keys = max(imgui.calc_text_size(key).x for key, _ in rows)
+            wide = keys + gap + max(imgui.calc_text_size(meaning).x for _, meaning in rows) + 2 * pad
+            high = line * len(rows) + 2 * pad
             left, top = max((room.x - wide) / 2, 0.0), max((room.y - high) / 2, 0.0)
             over = imgui.get_foreground_draw_list()
             corner = ImVec2(left + wide, top + high)
             over.add_rect_filled(ImVec2(left, top), corner, packed((0.06, 0.07, 0.08), 0.88), 8.0)
-            for number, (key, meaning) in enumerate(HELP):
+            for number, (key, meaning) in enumerate(rows):
                 y = top + pad + number * line
                 over.add_text(ImVec2(left + pad, y), packed(DARK.warm), key)
-                over.add_text(
-                    ImVec2(left + pad + keys + gap, y), packed(DARK.ink if meaning else DARK.dim), meaning
-                )
+                over.add_text(ImVec2(left + pad + keys + gap, y), packed(DARK.ink), meaning)
 
 
 def _plate(

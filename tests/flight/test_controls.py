@@ -15,7 +15,8 @@ from playground.flight.craft import (
     by_mouse,
     together,
 )
-from playground.flight.window import HELP, clock
+from playground.flight.window import clock, help_rows
+from playground.studio.language import choose_language
 
 
 def test_keys_command_full_deflection_and_opposites_cancel():
@@ -65,6 +66,16 @@ def test_several_hands_add_up_and_stay_within_bounds():
     assert together(Controls()) == Controls()
 
 
-def test_the_clock_and_the_help():
+def test_the_clock_goes_from_midnight_to_midnight():
     assert [clock(h) for h in (0.0, 9.5, 23.999)] == ["00:00", "09:30", "00:00"]
-    assert all(key.isascii() and meaning.isascii() for key, meaning in HELP), "the font has no arrows"
+
+
+def test_the_help_is_in_the_window_s_language():
+    english = dict(help_rows())
+    choose_language("fr")
+    try:
+        french = dict(help_rows())
+    finally:
+        choose_language("en")
+    assert english["Ctrl+Q"] == "quit, while paused" and french["Ctrl+Q"] == "quitter, pendant la pause"
+    assert len(french) == len(english) and not {*english.values()} & {*french.values()}

@@ -14,6 +14,8 @@ import pytest
 
 from playground.flight.craft import Controls
 from playground.flight.record import read_record
+from playground.paths import NAME
+from playground.studio.interface import FORMAT
 
 from ..sketch_texts import passes
 from ..studio.screen import LIMIT, ON_LINUX, Program, Screen
@@ -45,8 +47,11 @@ pytestmark = ON_LINUX
 class App(Program):
     """A flight in a window, on an X server of its own."""
 
-    def __init__(self, folder: Path, *arguments: str) -> None:
+    def __init__(self, folder: Path, *arguments: str, speaks: str = "en") -> None:
         (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+        interface = folder / "state" / NAME / "interface.json"
+        interface.parent.mkdir(parents=True)
+        interface.write_text(json.dumps({"format": FORMAT, "language": speaks}), encoding="utf-8")
         command = [sys.executable, "-m", "playground", "fly", *arguments, "--size", f"{WIDTH}x{HEIGHT}"]
         super().__init__(Screen(folder, WIDTH, HEIGHT), folder, command, folder)
 
@@ -60,8 +65,8 @@ class App(Program):
 def open_app(tmp_path: Path) -> Iterator[Callable[..., App]]:
     opened: list[App] = []
 
-    def make(*arguments: str) -> App:
-        opened.append(App(tmp_path, *arguments))
+    def make(*arguments: str, speaks: str = "en") -> App:
+        opened.append(App(tmp_path, *arguments, speaks=speaks))
         return opened[-1]
 
     yield make
@@ -134,9 +139,10 @@ def test_a_replay_flies_by_itself_and_stops_at_its_end(open_app: Callable[..., A
     header |= {"step": 1 / 60, "radius": 1.5, "values": {}, "start": None}
     rows = [json.dumps(header), "[40, 0, 0, 100, 0]", '{"hour": 16.0}', "[30, 0, 40, 0, 0]"]
     (tmp_path / "b.jsonl").write_text("\n".join(rows), encoding="utf-8")
-    app = open_app("--replay", "b.jsonl")
+    app = open_app("--replay", "b.jsonl", speaks="fr")
     now = app.wait(lambda now: now["ready"] and now["paused"])
     assert now["steps"] == 70 and now["hour"] == 16.0 and now["roll"] > 0.3
+    assert now["language"] == "fr", "as another window has chosen it"
     app.screen.do("keydown", "ctrl", "sleep", 0.2, "key", "q", "keyup", "ctrl")
     assert app.ended() == 0, app.complaint()
 

@@ -10,8 +10,12 @@ from pathlib import Path
 import playground
 
 ROOT = Path(playground.__file__).resolve().parent
-MODULES = sorted({*(ROOT / "studio").rglob("*.py"), *ROOT.glob("*/window/*.py"), *ROOT.glob("*/addition.py")})
-"""The modules of the window, and those that rooms add to it."""
+DRAWS = re.compile(r"^from (imgui_bundle import .*\bimgui\b|playground\.studio\.language )", re.MULTILINE)
+MODULES = sorted(
+    {*(ROOT / "studio").rglob("*.py"), *ROOT.glob("*/window/*.py"), *ROOT.glob("*/addition.py")}
+    | {path for path in ROOT.rglob("*.py") if DRAWS.search(path.read_text("utf-8"))}
+)
+"""The modules of the window, those that rooms add to it, and those that draw in one of their own."""
 
 TRANSLATE = {"tr", "tr_label", "counted", "shortcut"}
 LESSONS = {"page", "self", "reader"}
