@@ -560,7 +560,8 @@ class Live:
         self.guard.run("tracing", lambda: tracing.update(picture), None)
         self.guard.run("the texel for editors", self.live_texel.update, None)
         corner = bench.interface, bench.inspection, look, above
-        draw("the frames a second", lambda: draw_readout(self.readout, *corner), None)
+        if not bench.problems.open:
+            draw("the frames a second", lambda: draw_readout(self.readout, *corner), None)
         if picture is not None and not bench.problems.open:
             draw("the hints", lambda: draw_hints(bench.interface.preferences, look, above), None)
         draw("the pinned texel", lambda: draw_mark(tracing, look, area), None)

@@ -195,9 +195,12 @@ def choose(
 
 @contextmanager
 def menu(label: str, name: str, note: str, *, small: bool = False) -> Iterator[bool]:
-    """Draw a button that opens a popup; the block draws what is in it, where it is given True."""
+    """Draw a button that opens a popup below it; the block draws what is in it, where it is given True."""
     if button(label, note, small=small):
         imgui.open_popup(name)
+        below = ImVec2(imgui.get_item_rect_min().x, imgui.get_item_rect_max().y)
+        popups = imgui.get_current_context().open_popup_stack
+        popups[len(popups) - 1].open_popup_pos = below
     opened = imgui.begin_popup(name)
     yield opened
     if opened:
