@@ -19,7 +19,7 @@ from playground.errors import PlaygroundError
 from playground.files import read_regular, write_file
 from playground.json_text import read_json
 from playground.paths import state_folder
-from playground.studio.language import tr
+from playground.studio.language import numeral, tr
 from playground.studio.notices import Notices
 
 if TYPE_CHECKING:
@@ -286,7 +286,7 @@ def resize(preferences: Preferences, by: int, notices: Notices) -> None:
         preferences.choose(size=1.0)
     what = tr("text and panels at")
     notices.drop(what)
-    notices.say(f"{what} {preferences.size:.0%}")
+    notices.say(f"{what} {numeral(preferences.size, '.0%')}")
 
 
 @dataclass

@@ -20,6 +20,8 @@ LANGUAGES = {"en": "English", "fr": "Français"}
 _chosen = "en"
 _NO_BREAK = re.compile(r"(?<=\S) (?=[:;?!»])|(?<=«) ")
 """Blanks at which no French line ends; the file of words has plain ones."""
+_MARKS = str.maketrans({",": "\u00a0", ".": ",", "%": "\u00a0%"})
+"""The marks of a French number, by the English ones."""
 
 
 def language() -> str:
@@ -56,6 +58,15 @@ def counted(number: int, noun: str) -> str:
     if _chosen == "en":
         return errors.counted(number, noun)
     return f"{number} {tr(noun if number in (0, 1) else f'{noun}s')}"
+
+
+def numeral(value: float, form: str = "g") -> str:
+    """Return what is measured or counted as the language in use writes it: "1,234.5", "1 234,5".
+
+    What can be typed has a point in every language, as in a sketch's file.
+    """
+    text = format(value, form)
+    return text if _chosen == "en" else text.translate(_MARKS)
 
 
 def shortcut(keys: str) -> str:

@@ -17,7 +17,7 @@ from playground.studio.inspect.inspector import Inspector
 from playground.studio.inspect.panel import draw_values
 from playground.studio.keyframes.panel import draw_timeline, height_of_timeline
 from playground.studio.land.panel import draw_land
-from playground.studio.language import tr, tr_label
+from playground.studio.language import numeral, tr, tr_label
 from playground.studio.notices import Notices
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -69,7 +69,7 @@ def behind_text(done: int, total: int, source: str = "") -> str:
     """Return "computing frame 1,200 of 36,000 …", or of a source "making height … 34 %"."""
     if source:
         return tr("making {source} … {percent} %", source=source, percent=done * 100 // total)
-    return tr("computing frame {done} of {total} …", done=f"{done:,}", total=f"{total:,}")
+    return tr("computing frame {done} of {total} …", done=numeral(done, ","), total=numeral(total, ","))
 
 
 def checking_text(subject: str, seconds: float) -> str:

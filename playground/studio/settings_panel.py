@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.studio import theme
 from playground.studio.draw import OVERLAY, Area, button, menu, window
 from playground.studio.interface import HINTS, SIZES, Interface, Preferences
-from playground.studio.language import LANGUAGES, choose_language, language, tr
+from playground.studio.language import LANGUAGES, choose_language, language, numeral, tr
 from playground.studio.theme import Theme
 
 _MENU = "settings"
@@ -56,7 +56,7 @@ def _draw_choices(preferences: Preferences) -> None:
     if button("−###smaller", tr("Smaller (Ctrl+-)"), enabled=preferences.size > SIZES[0]):
         preferences.step(-1)
     imgui.same_line()
-    if button(f"{preferences.size:.0%}###first size", tr("As large as the screen says (Ctrl+0)")):
+    if button(f"{numeral(preferences.size, '.0%')}###first size", tr("As large as the screen says (Ctrl+0)")):
         preferences.choose(size=1.0)
     imgui.same_line()
     if button("+###larger", tr("Larger (Ctrl++)"), enabled=preferences.size < SIZES[-1]):

@@ -25,7 +25,7 @@ from playground.studio import language
 from playground.studio.addition import Addition
 from playground.studio.compare.compare import Mode
 from playground.studio.keys import GESTURES, Key, all_keys
-from playground.studio.language import LANGUAGES, choose_language, counted, shortcut, tr
+from playground.studio.language import LANGUAGES, choose_language, counted, numeral, shortcut, tr
 from playground.studio.paint.brush import TOOLS
 from playground.studio.panel.parameter_list import Filter, filtered
 from playground.studio.remote.controllers import KINDS
@@ -159,6 +159,13 @@ def test_numbers_have_their_plural_in_both() -> None:
     assert counted(2, "locked parameter") == "2 paramètres verrouillés"
 
 
+def test_numbers_have_the_marks_of_the_language() -> None:
+    written = [(1234567, ","), (0.25, "g"), (-31.415, ".1f"), (1.25, ".0%")]
+    assert [numeral(*each) for each in written] == ["1,234,567", "0.25", "-31.4", "125%"]
+    choose_language("fr")
+    assert [numeral(*each) for each in written] == ["1\xa0234\xa0567", "0,25", "-31,4", "125\xa0%"]
+
+
 def test_keys_are_called_as_the_keyboard_calls_them() -> None:
     assert shortcut("Ctrl+Shift+Z, Ctrl+Y") == "Ctrl+Shift+Z, Ctrl+Y"
     choose_language("fr")
@@ -254,6 +261,11 @@ def shipped_words() -> dict[str, set[str]]:
         "passes": {label_of(spec.name) for sketch in sketches for spec in sketch.graph.passes},
         "sketches": {sketch.title for sketch in sketches},
         "techniques": {technique.title for technique in techniques},
+        "units": {
+            unit
+            for p in parameters
+            if re.search(r"[a-z]{3}|yr|\bd\b", unit := p.unit or p.widget.facts.unit) and unit != "degrees"
+        },
         "brush": {"Radius", "Strength", "Softness"},
     }
 

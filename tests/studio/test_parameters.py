@@ -231,8 +231,10 @@ MENU = Parameter("a", "int", 0, Widget("menu", choices=("soft", "hard")))
     [
         (ANGLE, "pi/4", math.pi / 4),
         (ANGLE, " 2 * 3.5 ", 7.0),
+        (ANGLE, "0,25", 0.25),
         (WHOLE, "2**3", 8),
         (PAIR, "1/4, max(1, 2)", (0.25, 2.0)),
+        (PAIR, "1,2", (1.0, 2.0)),
         (MENU, "hard", 1),
         (Parameter("a", "vec3", (0.0, 0.0, 0.0), Widget("colour")), "#ff0000", (1.0, 0.0, 0.0)),
     ],

@@ -17,7 +17,7 @@ MODULES = sorted(
 )
 """The modules of the window, those that rooms add to it, and those that draw in one of their own."""
 
-TRANSLATE = {"tr", "tr_label", "counted", "shortcut"}
+TRANSLATE = {"tr", "tr_label", "counted", "numeral", "shortcut"}
 LESSONS = {"page", "self", "reader"}
 """What has a ``say`` and a ``label`` that look words up in the catalogue of lessons, by keys."""
 SHOW = {

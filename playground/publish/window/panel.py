@@ -30,7 +30,7 @@ from playground.studio.draw import (
     wrapped,
 )
 from playground.studio.edits.edits import Draft
-from playground.studio.language import tr
+from playground.studio.language import numeral, tr
 from playground.studio.panel.parameter_list import items_of
 from playground.studio.theme import Theme
 
@@ -212,7 +212,7 @@ def _sweep(settings: ShowSettings, number: int, draft: Draft | None) -> None:
 
 def _mesh(show: Show) -> None:
     settings, factor = show.settings, show.session.exaggeration
-    label = tr("Exaggerated ×{factor}, as shown", factor=f"{factor:g}")
+    label = tr("Exaggerated ×{factor}, as shown", factor=numeral(factor))
     with disabled(factor == 1.0):
         _, settings.exaggerated = imgui.checkbox(f"{label}###exaggerated", settings.exaggerated)
     imgui.set_item_tooltip(

@@ -47,7 +47,7 @@ from playground.sketch.traits import is_animated, traits_of
 from playground.studio.compare.compare import as_before
 from playground.studio.cost.costs import PassCosts
 from playground.studio.land.looks import look_title
-from playground.studio.language import language, tr
+from playground.studio.language import language, numeral, tr
 from playground.studio.notices import Notices
 from playground.studio.picture.view import field_for
 from playground.studio.session import Session
@@ -378,8 +378,8 @@ class Show:
             "count": series.count,
             "wide": wide,
             "high": high,
-            "seconds": f"{float(series.count / series.fps):.4g}",
-            "fps": f"{float(job.fps):g}",
+            "seconds": numeral(float(series.count / series.fps), ".4g"),
+            "fps": numeral(float(job.fps)),
             "form": form,
         }
         if job.kind == TURNTABLE:
@@ -403,15 +403,15 @@ class Show:
             count = count_parts(job.sketch, job.size)
             yield tr("It is drawn in {count} parts, which meet without a seam.", count=count)
         if job.kind in (PICTURE, TURNTABLE) and is_animated(job.sketch):
-            yield tr("The time stands at {time} s.", time=f"{job.time:.2f}")
+            yield tr("The time stands at {time} s.", time=numeral(job.time, ".2f"))
         if factor != 1.0 and job.kind == PAGE:
             yield tr(
-                "A page has no exaggeration: heights are true in it, not ×{factor}.", factor=f"{factor:g}"
+                "A page has no exaggeration: heights are true in it, not ×{factor}.", factor=numeral(factor)
             )
         elif factor != 1.0 and job.kind == MESH and not job.options.exaggeration:
-            yield tr("Heights are true metres, not ×{factor} as shown.", factor=f"{factor:g}")
+            yield tr("Heights are true metres, not ×{factor} as shown.", factor=numeral(factor))
         elif factor != 1.0:
-            yield tr("Heights are ×{factor}, as shown.", factor=f"{factor:g}")
+            yield tr("Heights are ×{factor}, as shown.", factor=numeral(factor))
         view = session.view
         if job.kind == MESH:
             return
@@ -615,7 +615,7 @@ def _texels(plan: Plan) -> dict[str, int]:
 
 def _result(working: JobProcess, finished: Finished) -> str:
     """Return a sentence on what a job has written."""
-    job, took = working.job, f"{time.monotonic() - working.started:.1f}"
+    job, took = working.job, numeral(time.monotonic() - working.started, ".1f")
     if finished.path is None:
         return tr("stopped; nothing was kept")
     name = finished.path.absolute()
@@ -635,7 +635,7 @@ def duration_text(seconds: float) -> str:
         return tr("about {seconds} s", seconds=max(round(seconds), 1))
     if seconds < 5400:
         return tr("about {minutes} min", minutes=round(seconds / 60))
-    return tr("about {hours} h", hours=f"{seconds / 3600:.1f}")
+    return tr("about {hours} h", hours=numeral(seconds / 3600, ".1f"))
 
 
 def size_text(size: int) -> str:

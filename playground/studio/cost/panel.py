@@ -20,7 +20,7 @@ from playground.studio.cost.readout import Readout
 from playground.studio.draw import OVERLAY, Area, explain, fitting, header, styled, table, window, wrapped
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.interface import Interface
-from playground.studio.language import tr
+from playground.studio.language import numeral, tr
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 from playground.studio.widgets import plot, plot_line, series
@@ -115,7 +115,7 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
         (
             partial(name, path),
             partial(imgui.text_disabled, f"{runs} ×"),
-            partial(imgui.text, f"{session.times[path]:.2f} ms" if path in session.times else ""),
+            partial(imgui.text, f"{numeral(session.times[path], '.2f')} ms" if path in session.times else ""),
         )
         for path, runs in engine.runs.items()
         if path.partition(".")[0] in own
@@ -163,17 +163,17 @@ def _plots(record: Record, look: Theme) -> None:
         text = tr(
             "{path}  {value} ms, most {max}",
             path=path,
-            value=f"{sum(spent) / len(spent):.2f}",
-            max=f"{max(spent):.2f}",
+            value=numeral(sum(spent) / len(spent), ".2f"),
+            max=numeral(max(spent), ".2f"),
         )
         imgui.text_unformatted(fitting(text, imgui.get_content_region_avail().x))
     with wrapped():
         imgui.text_disabled(
             tr(
                 "in all {value} ms; median of {held}: {median} ms",
-                value=f"{record.whole[-1]:.1f}",
+                value=numeral(record.whole[-1], ".1f"),
                 held=held,
-                median=f"{np.median(record.whole):.1f}",
+                median=numeral(np.median(record.whole), ".1f"),
             )
         )
     for name, numbers in (
@@ -183,7 +183,7 @@ def _plots(record: Record, look: Theme) -> None:
         imgui.plot_lines(
             f"##{name}",
             np.array(numbers, np.float32),
-            overlay_text=f"{numbers[-1]:,.0f} {name}",
+            overlay_text=f"{numeral(numbers[-1], ',.0f')} {name}",
             scale_min=0.0,
             graph_size=ImVec2(-1, 2.2 * imgui.get_font_size()),
         )
@@ -201,6 +201,6 @@ def _compiling(times: Mapping[str, float]) -> None:
         imgui.set_item_tooltip(path)
 
     ranked = sorted(times.items(), key=lambda item: -item[1])
-    rows = [(partial(name, path), partial(imgui.text, f"{ms:.1f} ms")) for path, ms in ranked]
+    rows = [(partial(name, path), partial(imgui.text, f"{numeral(ms, '.1f')} ms")) for path, ms in ranked]
     table("compiled", 2, rows, _TABLE)
     imgui.tree_pop()

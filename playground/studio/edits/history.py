@@ -19,7 +19,7 @@ from typing import Protocol, cast
 
 from playground.sketch.model import Camera, Value
 from playground.studio.edits.edits import Edits
-from playground.studio.language import counted, tr
+from playground.studio.language import counted, numeral, tr
 
 MOMENT = 0.7
 """[s] within which a change of the same things belongs to the step before."""
@@ -306,4 +306,4 @@ def _filled(state: State, before: State) -> State:
 
 
 def _seconds(value: object) -> str:
-    return f"{value:.2f} s" if isinstance(value, float) else "0 s"
+    return f"{numeral(value, '.2f')} s" if isinstance(value, float) else "0 s"

@@ -44,7 +44,7 @@ from playground.studio.graph.chooser_panel import draw_chooser
 from playground.studio.graph.edits import technique_at
 from playground.studio.graph.graph import Graph, Pin, Pull, Wiring, cost_of
 from playground.studio.interface import Tab
-from playground.studio.language import tr, tr_label
+from playground.studio.language import numeral, tr, tr_label
 from playground.studio.picture.view import Place
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -509,7 +509,7 @@ class GraphPanel:
         spec = sketch.graph.find(node.name) if sketch is not None else None
         use = spec.use.rpartition("/")[2] if spec is not None else node.name.rpartition(".")[0]
         runs, ran, spent = cost_of(self._bench.session, node.name)
-        cost = runs if spent is None else f"{spent:.2f} ms" if spent < 10 else f"{spent:.0f} ms"
+        cost = runs if spent is None else f"{numeral(spent, '.2f' if spent < 10 else '.0f')} ms"
         cost = tr("muted") if node.is_muted else f"• {cost}" if ran else cost
         ink = palette.accent if ran and not node.is_muted else palette.dim
         rows = [(node.name.rpartition(".")[2], look.bold, 14.0, palette.ink, 5.0)]
@@ -797,5 +797,5 @@ def _tooltip(node: str, session: Session) -> str:
                 form = next((o.format for o in step.kernel.outputs if o.name == ref.output), "")
                 lines.append(f"{output}  {step.size[0]} x {step.size[1]} {form}")
     runs, _, spent = cost_of(session, node)
-    lines.append(runs if spent is None else f"{runs}, {spent:.2f} ms")
+    lines.append(runs if spent is None else f"{runs}, {numeral(spent, '.2f')} ms")
     return "\n".join(lines)

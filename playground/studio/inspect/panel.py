@@ -14,7 +14,7 @@ from playground.studio.draw import OVERLAY, Area, button, fitting, table, window
 from playground.studio.inspect.histogram import BINS, STEPS, Histogram, ends_of, ticks
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.inspect.inspector import GroundPoint, PixelReport, Sample
-from playground.studio.language import tr
+from playground.studio.language import numeral, tr
 from playground.studio.picture.view import View, ref_name
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -43,7 +43,9 @@ def draw_spread(session: Session, inspection: Inspection, look: Theme) -> None:
         _table(result)
         if not result.whole:
             imgui.text_disabled(
-                fitting(tr("of {read} texels, whole rows of it", read=f"{result.read:,}"), 300 * look.scale)
+                fitting(
+                    tr("of {read} texels, whole rows of it", read=numeral(result.read, ",")), 300 * look.scale
+                )
             )
         if not inspection.counter.fresh:
             imgui.text_disabled(tr("of a moment ago; counting again …"))
@@ -136,15 +138,15 @@ def _table(document: Histogram) -> None:
         imgui.text_colored(theme.colour(theme.palette.channels[number]), tr(_CHANNELS[number]))
         for value in (channel.lowest, channel.highest, channel.mean, channel.deviation):
             imgui.table_next_column()
-            imgui.text_unformatted(tr("none") if math.isnan(value) else f"{value:.4g}")
+            imgui.text_unformatted(tr("none") if math.isnan(value) else numeral(value, ".4g"))
     imgui.end_table()
     for number, channel in enumerate(document.channels):
         if channel.nans or channel.infinities:
             text = tr(
                 "{channel}: {nans} NaN, {infinities} infinite",
                 channel=tr(_CHANNELS[number]),
-                nans=f"{channel.nans:,}",
-                infinities=f"{channel.infinities:,}",
+                nans=numeral(channel.nans, ","),
+                infinities=numeral(channel.infinities, ","),
             )
             imgui.text_colored(theme.colour(theme.palette.alarm), text)
 
@@ -220,14 +222,18 @@ def _place(ground: GroundPoint) -> list[tuple[str, str]]:
     names = [
         (
             tr("place"),
-            tr("{east} m east, {north} m north", east=f"{ground.east:.1f}", north=f"{ground.north:.1f}"),
+            tr(
+                "{east} m east, {north} m north",
+                east=numeral(ground.east, ".1f"),
+                north=numeral(ground.north, ".1f"),
+            ),
         ),
         (
             tr("ground"),
             tr(
                 "{height} m, {above_sea} m above the sea",
-                height=f"{ground.height:.2f}",
-                above_sea=f"{ground.above_sea:.2f}",
+                height=numeral(ground.height, ".2f"),
+                above_sea=numeral(ground.above_sea, ".2f"),
             ),
         ),
         (tr("normal"), f"{east:+.3f} {north:+.3f} {up:+.3f}"),

@@ -18,7 +18,7 @@ from playground.sketch.model import Camera, Keyframe, Sketch
 from playground.studio.actions import rounded
 from playground.studio.edits.edits import Edits, leaves
 from playground.studio.edits.undo import Undo
-from playground.studio.language import tr, tr_label
+from playground.studio.language import numeral, tr, tr_label
 from playground.studio.notices import Notices
 from playground.studio.save.sketch_file import save_keyframes
 from playground.studio.session import Session
@@ -80,16 +80,16 @@ class KeyframeEdits:
         left = tuple(v for v in draft.edits.values if not keyed & leaves(draft.base, v[0]))
         edits = replace(draft.edits, values=left, camera=None if camera else draft.edits.camera)
         others = [keyframe for keyframe in keyframes if keyframe is not here]
-        return self._write([*others, made], tr("Keyframe at {time} s", time=f"{time:g}"), edits)
+        return self._write([*others, made], tr("Keyframe at {time} s", time=numeral(time)), edits)
 
     def move(self, index: int, time: float) -> bool:
         """Move a keyframe to another time [s]; its place among the others follows."""
         keyframes, time = self.keyframes, _rounded_time(time)
         if any(keyframe.time == time for number, keyframe in enumerate(keyframes) if number != index):
-            self.notices.say(tr("there is a keyframe at {time} s already", time=f"{time:g}"))
+            self.notices.say(tr("there is a keyframe at {time} s already", time=numeral(time)))
             return False
         return self._replace(
-            index, tr("Keyframe to {time} s", time=f"{time:g}"), replace(keyframes[index], time=time)
+            index, tr("Keyframe to {time} s", time=numeral(time)), replace(keyframes[index], time=time)
         )
 
     def set_ease(self, index: int, ease: str) -> bool:
@@ -103,7 +103,7 @@ class KeyframeEdits:
     def delete(self, index: int) -> bool:
         """Delete a keyframe."""
         return self._replace(
-            index, tr("Delete the keyframe at {time} s", time=f"{self.keyframes[index].time:g}")
+            index, tr("Delete the keyframe at {time} s", time=numeral(self.keyframes[index].time))
         )
 
     def _replace(self, index: int, name: str, *instead: Keyframe) -> bool:

@@ -14,7 +14,7 @@ from playground.studio.draw import QUIET, Area, button, choose, cross, header, p
 from playground.studio.edits.undo import Undo
 from playground.studio.interface import Interface
 from playground.studio.keyframes.keyframe_edits import STEP, KeyframeEdits, summary
-from playground.studio.language import shortcut, tr, tr_label
+from playground.studio.language import numeral, shortcut, tr, tr_label
 from playground.studio.panel.parameter_list import items_of
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -82,7 +82,7 @@ def _line(index: int, edits: KeyframeEdits) -> bool:
         edits.undo.seek(keyframe.time)
         clock.playing = False
     imgui.set_item_tooltip(
-        tr("Go to {time} s", time=f"{keyframe.time:g}") + "\n" + tr("sets {what}", what=summary(keyframe))
+        tr("Go to {time} s", time=numeral(keyframe.time)) + "\n" + tr("sets {what}", what=summary(keyframe))
     )
     imgui.same_line()
     rest = imgui.get_content_region_avail().x - slot() - 2 * imgui.get_style().item_spacing.x
@@ -96,7 +96,9 @@ def _line(index: int, edits: KeyframeEdits) -> bool:
     imgui.set_item_tooltip(tr("How values go from here to the next"))
     imgui.same_line()
     if cross(
-        "##delete", tr("Delete the keyframe at {time} s", time=f"{keyframe.time:g}"), imgui.get_frame_height()
+        "##delete",
+        tr("Delete the keyframe at {time} s", time=numeral(keyframe.time)),
+        imgui.get_frame_height(),
     ):
         return edits.delete(index)
     if entered and time != keyframe.time:
@@ -162,7 +164,7 @@ def _controls(undo: Undo, look: Theme) -> None:
 
 
 def _times(speed: float) -> str:
-    return f"{speed:g} x"
+    return f"{numeral(speed)} x"
 
 
 def _bar(sketch: Sketch, undo: Undo, look: Theme) -> None:
@@ -185,7 +187,7 @@ def _bar(sketch: Sketch, undo: Undo, look: Theme) -> None:
         else:
             undo.seek(time)
     elif imgui.is_item_hovered():
-        imgui.set_tooltip(f"{time_at(mouse - corner.x):.2f} s")
+        imgui.set_tooltip(f"{numeral(time_at(mouse - corner.x), '.2f')} s")
     draw = imgui.get_window_draw_list()
     middle, scale = corner.y + high / 2, look.scale
 

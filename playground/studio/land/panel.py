@@ -49,7 +49,7 @@ from playground.studio.land.land import (
 )
 from playground.studio.land.looks import LOOKS, look_of, look_title
 from playground.studio.land.walk import Walk
-from playground.studio.language import tr, tr_label
+from playground.studio.language import numeral, tr, tr_label
 from playground.studio.panel.parameter_list import Item
 from playground.studio.session import Session
 from playground.studio.theme import Theme
@@ -346,9 +346,9 @@ def draw_land(session: Session, walk: Walk, look: Theme, area: Area) -> None:
     """Write in the picture's lower left corner how many times too high the land is shown, and of a walk."""
     factor, texts = session.exaggeration, []
     if factor != 1.0:
-        texts.append(tr("heights ×{factor}", factor=f"{factor:g}"))
+        texts.append(tr("heights ×{factor}", factor=numeral(factor)))
     if walk.on:
-        texts.append(tr("walking, {speed} m/s; Esc ends", speed=f"{walk.speed:.3g}"))
+        texts.append(tr("walking, {speed} m/s; Esc ends", speed=numeral(walk.speed, ".3g")))
     if not texts or session.plan is None:
         return
     margin = 14 * look.scale

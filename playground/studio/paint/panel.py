@@ -8,7 +8,7 @@ from typing import Any
 from imgui_bundle import imgui
 
 from playground.studio.draw import buttons, choose, row
-from playground.studio.language import shortcut, tr, tr_label
+from playground.studio.language import numeral, shortcut, tr, tr_label
 from playground.studio.paint.brush import ERASER, TOOLS, Brush
 from playground.studio.paint.painting import MAX_RADIUS, MIN_RADIUS, Painting
 from playground.studio.widgets import slide
@@ -112,5 +112,6 @@ def _strength(painting: Painting) -> str:
     if not painting.sculpts:
         return tr("How much of what was there one step of a stroke covers")
     return tr(
-        "Of the tool, while the button is down; raise and lower: {rate} a second", rate=f"{painting.rate:.3g}"
+        "Of the tool, while the button is down; raise and lower: {rate} a second",
+        rate=numeral(painting.rate, ".3g"),
     )

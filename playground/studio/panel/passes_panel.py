@@ -40,7 +40,7 @@ from playground.studio.edits.edits import Draft
 from playground.studio.graph.graph import cost_of
 from playground.studio.interface import TypedAhead
 from playground.studio.land.panel import TerrainGroup
-from playground.studio.language import counted, tr, tr_label
+from playground.studio.language import counted, numeral, tr, tr_label
 from playground.studio.notices import Notices
 from playground.studio.panel.parameter_list import (
     Group,
@@ -346,7 +346,7 @@ class _Drawing:
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         text, ran, spent = cost_of(session, spec.name)
         if session.engine.options.profiling and spent is not None:
-            text = f"{spent:.1f} ms    {text}"
+            text = f"{numeral(spent, '.1f')} ms    {text}"
         text = f"• {text}" if ran else text
         size = imgui.calc_text_size(text)
         right = high.x - slot() - 8 * look.scale

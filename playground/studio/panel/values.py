@@ -10,14 +10,16 @@ fraction for each part.
 from __future__ import annotations
 
 import math
+import re
 
 from playground.errors import ParameterError
 from playground.shader.colours import linear_to_srgb, srgb_to_linear
 from playground.shader.expressions import ExpressionError, evaluate_numbers
-from playground.shader.parameter import coerce, is_whole
+from playground.shader.parameter import coerce, is_whole, length_of
 from playground.shader.widgets import at_fraction, fraction_of
 from playground.sketch.assign import range_of
 from playground.sketch.model import Parameter, Value
+from playground.studio.language import tr_label
 
 
 def decimals(parameter: Parameter) -> int:
@@ -47,7 +49,7 @@ def format_of(parameter: Parameter) -> str:
 def unit_of(parameter: Parameter) -> str:
     """Return the unit as it follows a number: degrees close up, others after a space."""
     unit = parameter.unit or parameter.widget.facts.unit
-    unit = "°" if unit == "degrees" else unit
+    unit = "°" if unit == "degrees" else tr_label(unit)
     return unit if unit in ("", "°", "%") else f" {unit}"
 
 
@@ -75,16 +77,21 @@ def _places(step: float) -> int:
 NAMES = {"pi": math.pi, "tau": math.tau}
 """What an expression may name."""
 
+_DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+")
+"""A number as some languages write it; of a single one the comma is no mark between several."""
 _WORDS = ("menu", "file", "checkbox", "button")
 
 
 def read_typed(parameter: Parameter, text: str, path: str) -> Value:
-    """Return the value that a text means; several numbers are separated by commas.
+    """Return the value that a text means; commas separate several numbers.
 
+    A single number may have a decimal comma.
     Raises ``ParameterError`` for what is no expression, and for a value that the parameter
     does not take: one outside its range, which ``--set`` and the sketch refuse as well.
     """
     text = text.strip()
+    if length_of(parameter.type) == 1 and _DECIMAL_COMMA.fullmatch(text):
+        text = text.replace(",", ".")
     if parameter.widget.kind in _WORDS or text.startswith("#"):
         return coerce(parameter, text, path)
     try:

@@ -24,7 +24,7 @@ from playground.errors import PlaygroundError
 from playground.sketch.model import ComputeVariant, CpuSource, Draw, PlainFragment, TexelKernel
 from playground.sketch.variants import canonical_path
 from playground.studio.inspect.inspector import Inspector, Pixel
-from playground.studio.language import tr
+from playground.studio.language import numeral, tr
 from playground.studio.reload.stages import refusal
 from playground.studio.session import Session
 from playground.studio.trace.rows import Selection, TraceView
@@ -552,7 +552,7 @@ class Tracing:
         texel, count, runs = found
         self.choice.pin, self.choice.spot = None, Spot(canonical_path(probe_map.probe.path), texel)
         self.seek.run = runs
-        more = tr("; {count} texels in all", count=f"{count:,}") if count > 1 else tr("; in no other")
+        more = tr("; {count} texels in all", count=numeral(count, ",")) if count > 1 else tr("; in no other")
         first = tr("first at texel {column}, {row}, in run {runs}", column=texel[0], row=texel[1], runs=runs)
         self.probe.message = first + more
 
