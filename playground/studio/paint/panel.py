@@ -5,23 +5,31 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
-from playground.studio.draw import buttons, choose, row
+from playground.studio.draw import buttons, choose, header, row
 from playground.studio.language import numeral, shortcut, tr, tr_label
 from playground.studio.paint.brush import ERASER, TOOLS, Brush
 from playground.studio.paint.painting import MAX_RADIUS, MIN_RADIUS, Painting
+from playground.studio.theme import Theme
 from playground.studio.widgets import slide
 
 _CHANNELS = {0: "the first", 1: "the second", 2: "the third", 3: "the fourth", ERASER: "none: erase"}
 
 
-def draw_paintbox(painting: Painting) -> None:
+def draw_paintbox(painting: Painting, look: Theme) -> None:
     """Draw the brush's controls, where the sketch has a mask to paint on."""
     if not painting.target:
         return
+    fits = imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.nav_flattened
+    imgui.begin_child("paint", ImVec2(0, 0), fits)  # in which a header is as wide as what is below it
+    _draw_controls(painting, look)
+    imgui.end_child()
+
+
+def _draw_controls(painting: Painting, look: Theme) -> None:
     imgui.set_next_item_open(painting.on)
-    opened = imgui.collapsing_header(f"{tr('Paint')}###paint")
+    opened = header(f"{tr('Paint')}###paint", look)
     imgui.set_item_tooltip(tr("Paint on {target} with the left button (B)", target=painting.target))
     if opened != painting.on:
         painting.toggle()

@@ -121,7 +121,7 @@ class Panel:
     def _draw_head(self, bench: Workbench, look: Theme) -> None:
         draw_head(self.memory, bench, look)
         if bench.session.sketch is not None:
-            draw_paintbox(bench.painting)
+            draw_paintbox(bench.painting, look)
             draw_search(self.memory, bench.interface.ahead)
 
 
