@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
-from playground.studio.language import tr
+from playground.studio.language import numeral, tr
 from playground.studio.session import Session
 
 _SPAN = 1.0  # [s] over which frames are counted
@@ -61,4 +61,4 @@ class Readout:
             size = f"{across} × {down} → {size}" if (across, down) != (wide, high) else size
         rate = tr("{count} fps", count=self.frames) if self.frames else tr("at rest")
         digits = 1 if self.milliseconds < 10 else 0
-        return f"{rate}   {size}   {self.milliseconds:.{digits}f} ms"
+        return f"{rate}   {size}   {numeral(self.milliseconds, f'.{digits}f')} ms"

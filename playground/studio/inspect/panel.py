@@ -91,7 +91,9 @@ def _legend(shown: Map, session: Session, inspection: Inspection, look: Theme) -
     if imgui.is_item_hovered():
         fraction = (imgui.get_io().mouse_pos.x - corner.x) / wide
         number = low + fraction * (high - low)
-        imgui.set_tooltip(f"{number:.6g}" + (f" = {number * factor:.2f} m" if metres is not None else ""))
+        imgui.set_tooltip(
+            f"{number:.6g}" + (f" = {numeral(number * factor, '.2f')} m" if metres is not None else "")
+        )
 
 
 def _plot(histogram: Histogram, shown: Map, inspection: Inspection, look: Theme) -> None:
@@ -242,13 +244,13 @@ def _place(ground: GroundPoint) -> list[tuple[str, str]]:
     if math.hypot(east, north) > 1e-6:
         azimuth = math.degrees(math.atan2(east, north)) % 360
         faces = tr(", faces {direction}", direction=tr(_POINTS[round(azimuth / 45) % 8]))
-    return [*names, (tr("slope"), f"{ground.slope:.1f}°{faces}")]
+    return [*names, (tr("slope"), f"{numeral(ground.slope, '.1f')}°{faces}")]
 
 
 def _line(sample: Sample, ink: theme.Rgb) -> tuple[str, str, theme.Rgb]:
     text = "  ".join(f"{value:.6g}" for value in sample.values)
     if sample.metres is not None and math.isfinite(sample.metres):
-        text += f" = {sample.metres:.2f} m"
+        text += f" = {numeral(sample.metres, '.2f')} m"
     text += tr("   at {value}, {value_2}", value=sample.texel[0], value_2=sample.texel[1])
     colour = ink if all(map(math.isfinite, sample.values)) else theme.palette.alarm
     return ref_name(sample.name), text, colour
