@@ -269,7 +269,8 @@ class SketchFile:
         try:
             act()
         except ReadOnlySketch as error:
-            self.offer, self.asks = f"{str(error).rpartition(': ')[2].capitalize()}.", True
+            why = next((tr(words) for words in _READ_ONLY if str(error).endswith(words)), str(error))
+            self.offer, self.asks = f"{why[0].upper()}{why[1:]}.", True
         except PlaygroundError as error:
             self.notices.say(str(error))
         else:
@@ -281,6 +282,15 @@ class SketchFile:
     def change_texts(self, changes: Mapping[Path, TextChange]) -> bool:
         """Change several files, or none; return whether that worked."""
         return self.write(lambda: write_texts(changes), *changes)
+
+
+_READ_ONLY = (
+    "a shader opened alone has no sketch file to save into",
+    "an elevation file opened alone has no sketch file to save into",
+    "this sketch belongs to the playground itself",
+    "this sketch cannot be written to",
+)
+"""Why a sketch is not written, as ``ReadOnlySketch`` says it."""
 
 
 def merged(path: Path, data: bytes | None, change: TextChange) -> bytes | None:
