@@ -29,6 +29,7 @@ from playground.studio.language import LANGUAGES, choose_language, counted, nume
 from playground.studio.paint.brush import TOOLS
 from playground.studio.panel.parameter_list import Filter, filtered
 from playground.studio.remote.controllers import KINDS
+from playground.studio.start.page import TEMPLATES
 from playground.studio.theme import PANEL_WIDTH
 from playground.studio.trace.tracing import Beside
 
@@ -61,6 +62,7 @@ def tables() -> dict[str, set[str]]:
         others |= {*module.KEYS}
     own = of_keys({*all_keys()} - others) | {word for gesture in GESTURES for word in gesture}
     own |= {*TOOLS, *KINDS, WALL, QUERY, *(mode.value for mode in (*Mode, *Beside))}
+    own |= {word for template in TEMPLATES for word in (template.title, template.note)}
     own |= {facts.expects for facts in WIDGETS.values()}
     own |= {*words.translated(PARAMETER, "say")}
     return {**found, "studio": own - {""}}

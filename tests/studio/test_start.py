@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import ast
 import tomllib
 from pathlib import Path
-from string import Formatter
 
 import numpy as np
 import pytest
@@ -159,27 +157,6 @@ def test_the_page_is_drawn_and_its_cards_clicked(page: StartPage, bare: Bare, an
 
 
 # ── words ─────────────────────────────────────────────────────────────────────
-
-
-def words_of_the_window() -> set[str]:
-    """Return every text that a room hands ``tr``."""
-    texts = set()
-    for path in (Path(language.__file__).parents[1]).rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "tr":
-                if node.args and isinstance(node.args[0], ast.Constant):
-                    texts.add(str(node.args[0].value))
-    return texts
-
-
-def test_every_word_of_the_window_is_translated() -> None:
-    french = tomllib.loads((Path(language.__file__).parent / "french.toml").read_text("utf-8"))
-    assert words_of_the_window() - french.keys() == set()
-    for english, text in french.items():
-        fields = [sorted(f for _, f, _, _ in Formatter().parse(t) if f) for t in (english, text)]
-        assert fields[0] == fields[1], english
-    for template in TEMPLATES:
-        assert {template.title, template.note} <= french.keys()
 
 
 def test_a_language_is_the_chosen_one_or_the_systems(monkeypatch: pytest.MonkeyPatch) -> None:
