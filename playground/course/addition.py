@@ -152,9 +152,9 @@ def _on_lessons(act: Callable[[Lessons], None]) -> Callable[[Workbench], None]:
 
 _K = imgui.Key
 KEYS = (
-    Key(_K.f2, "F2", "show the lessons, or no longer", _on_lessons(lambda own: own.toggle())),
-    Key(_K.page_down, "PgDn", "a page of the lesson on", _on_lessons(lambda own: own.reader.turn_page(1))),
-    Key(_K.page_up, "PgUp", "a page of the lesson back", _on_lessons(lambda own: own.reader.turn_page(-1))),
+    Key(_K.f2, "F2", "show or hide the lessons", _on_lessons(lambda own: own.toggle())),
+    Key(_K.page_down, "PgDn", "next page of the lesson", _on_lessons(lambda own: own.reader.turn_page(1))),
+    Key(_K.page_up, "PgUp", "previous page of the lesson", _on_lessons(lambda own: own.reader.turn_page(-1))),
     Key(
         _K.f5, "F5", "present the lesson to a class, full screen", _on_lessons(lambda own: own.stage.begin())
     ),

@@ -91,13 +91,13 @@ def _found(search: str) -> dict[str, list[Row]]:
 def _draw_columns(subjects: dict[str, list[Row]], look: Theme) -> None:
     """Draw subjects in their order, so that the highest of the columns is as low as can be."""
     if not subjects:
-        imgui.text_disabled(tr("No key is like that"))
+        imgui.text_disabled(tr("No key matches"))
         return
-    room = imgui.get_content_region_avail().x
+    room = imgui.get_content_region_avail().x - imgui.get_style().item_spacing.x  # before the scroll bar
     count = max(min(int(room / (_COLUMN * look.scale)), _MOST, len(subjects)), 1)
     column = room / count - imgui.get_style().item_spacing.x
     heights = [_height(rows, column) for rows in subjects.values()]
-    if not imgui.begin_table("columns", count):
+    if not imgui.begin_table("columns", count, outer_size=ImVec2(room, 0)):
         return
     bounds, items = _shared(heights, count), list(subjects.items())
     for start, end in itertools.pairwise(bounds):

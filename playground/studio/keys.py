@@ -115,7 +115,7 @@ _EDIT = "edit the file of the current error here, or in your own editor"
 _HELP = "show or hide these keys"
 _VISITS = "the sketch that was open before, and forward again"
 _BRUSH = "the brush: narrower, wider, weaker, stronger, harder, softer"
-_VERSIONS = "look at the version before, after; F7: while it is held"
+_VERSIONS = "look at the version before, after; F7: while the key is held"
 _SIZE_KEYS = "text and panels larger, smaller, at their first size"
 
 
@@ -132,18 +132,18 @@ def all_keys() -> tuple[Key, ...]:
 
 _KEYS: tuple[Key | None, ...] = (
     Key(_K.space, "Space", "play or pause", lambda b: b.session.clock.toggle()),
-    Key(_K.none, ",", "a frame of time back", lambda b: b.undo.step_time(-1), letter=","),
-    Key(_K.none, ".", "a frame of time on", lambda b: b.undo.step_time(1), letter="."),
-    Key(_K.l, "L", "loop time, or no longer", lambda b: b.undo.toggle_loop()),
+    Key(_K.none, ",", "a frame back", lambda b: b.undo.step_time(-1), letter=","),
+    Key(_K.none, ".", "a frame on", lambda b: b.undo.step_time(1), letter="."),
+    Key(_K.l, "L", "loop time, or not", lambda b: b.undo.toggle_loop()),
     Key(_K._0, "0", "time to 0", lambda b: b.undo.seek(0.0)),
     Key(_K.r, "R", "reset the view", lambda b: b.session.drafts.set_camera(None), brief="view"),
     Key(_K.m, "M", "map from above", lambda b: b.session.toggle_map(), brief="map"),
-    Key(_K.w, "W", "walk on the land: W A S D, arrows, drag, wheel", lambda b: b.walk.toggle()),
+    Key(_K.w, "W", "walk on the terrain: W A S D, arrows, drag, wheel", lambda b: b.walk.toggle()),
     Key(_K.x, "X", _CURSOR, lambda b: b.toggle_cursor()),
     Key(_K.i, "I", _INSPECT, lambda b: b.inspection.inspector.toggle()),
     Key(_K.t, "T", _TRACE, lambda b: b.tracing.toggle()),
-    Key(_K.a, "A", "keep this as A and compare; or no longer", lambda b: b.inspection.compare.toggle()),
-    Key(_K.g, "G", "the passes as a graph, or no longer", lambda b: b.toggle_passes()),
+    Key(_K.a, "A", "keep this as A and compare, or end that", lambda b: b.inspection.compare.toggle()),
+    Key(_K.g, "G", "show or hide the passes as a graph", lambda b: b.toggle_passes()),
     Key(_K.b, "B", "take the brush, or put it down", lambda b: b.painting.toggle()),
     Key(_K.none, "[", _BRUSH, lambda b: b.painting.resize(-1), letter="[", brush=True),
     Key(_K.none, "]", _BRUSH, lambda b: b.painting.resize(1), letter="]", brush=True),
@@ -160,18 +160,18 @@ _KEYS: tuple[Key | None, ...] = (
     Key(_K.o, "O", "start page: new, open, recent, shipped", lambda b: b.start.toggle(), brief="open"),
     None,  # the place of those of rooms
     Key(_K.none, "/", "search the parameters", lambda b: b.interface.search(), letter="/"),
-    Key(_K.f11, "F11", "fill the screen, or no longer", lambda b: b.window.toggle_full()),
+    Key(_K.f11, "F11", "fill the screen, or leave full screen", lambda b: b.window.toggle_full()),
     Key(_K.none, "?", _HELP, lambda b: b.interface.toggle_keymap(), letter="?", brief="keys"),
     Key(_K.f1, "F1", _HELP, lambda b: b.interface.toggle_keymap()),
-    Key(_K.f4, "F4", "frames a second in the corner, or no longer", lambda b: _toggle_readout(b)),
+    Key(_K.f4, "F4", "show or hide frames a second in the corner", lambda b: _toggle_readout(b)),
     Key(_K.f10, "F10", "language, colours, size of text, panes", lambda b: b.interface.ask_settings()),
     Key(_K.f6, "F6, Shift+F6", _VERSIONS, lambda b: _look(b)),
     Key(_K.f7, "F7", _VERSIONS, lambda b: b.versions.hold()),
     Key(_K.f6, "Ctrl+F6", "go back to the version that is looked at", lambda b: _go_back(b), ctrl=True),
-    Key(_K.v, "V", "the versions, or no longer", lambda b: b.panes.toggle_strip("versions")),
+    Key(_K.v, "V", "show or hide the versions", lambda b: b.panes.toggle_strip("versions")),
     Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
     Key(_K.e, "E, Shift+E", _EDIT, lambda b: b.files.open_current(b.problems, here=not _shift_held())),
-    Key(_K.e, "Ctrl+E", "the code pane, or no longer", lambda b: b.toggle_code(), ctrl=True),
+    Key(_K.e, "Ctrl+E", "show or hide the code pane", lambda b: b.toggle_code(), ctrl=True),
     Key(_K.z, "Ctrl+Z", "undo", lambda b: b.undo.undo(), ctrl=True),
     Key(_K.z, "Ctrl+Shift+Z", "redo", lambda b: b.undo.redo(), ctrl=True, shift=True),
     Key(_K.y, "Ctrl+Y", "redo", lambda b: b.undo.redo(), ctrl=True),

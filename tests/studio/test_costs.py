@@ -164,32 +164,32 @@ def test_a_row_says_why_its_pass_ran_last(bare: Bare, monkeypatch: pytest.Monkey
     reasons = bare.bench.inspection.reasons
     bare.session.drafts.set("height.level", 0.25)
     bare.run_frames(2)
-    assert reasons.text("height") == "Last ran: value level"
+    assert reasons.text("height") == "Last ran because of: value level"
     bare.click("Cost###costs")
     bare.session.drafts.set("height.level", 0.75)
     bare.run_frames(2)
-    assert reasons.text("height") == "Last ran: value level"
-    assert reasons.text("view") == "Last ran: input height"
+    assert reasons.text("height") == "Last ran because of: value level"
+    assert reasons.text("view") == "Last ran because of: input height"
     bare.session.drafts.set("view.grid", 9)
     bare.run_frames(2)
-    assert reasons.text("height") == "Last ran: value level"  # it did not run for the last picture
-    assert reasons.text("view") == "Last ran: value grid"
+    assert reasons.text("height") == "Last ran because of: value level"  # it did not run for the last picture
+    assert reasons.text("view") == "Last ran because of: value grid"
     tooltips: list[str] = []
     monkeypatch.setattr(imgui, "set_item_tooltip", tooltips.append)
     bare.run_frames()
-    assert {"Last ran: value level", "Last ran: value grid"} <= set(tooltips)
+    assert {"Last ran because of: value level", "Last ran because of: value grid"} <= set(tooltips)
     monkeypatch.setattr(imgui, "set_tooltip", tooltips.append)
     bare.point("View###pass")
-    assert any("\nLast ran: value grid\n" in text for text in tooltips)
+    assert any("\nLast ran because of: value grid\n" in text for text in tooltips)
 
 
 def test_of_what_is_inside_a_technique_each_has_a_line() -> None:
     inner = {f"light.{n}": StepKey("", "", "", "", (("value", n),)) for n in "abcdefgh"}
     reasons = RunReasons()
     reasons.add(FrameRecord(keys=Keys(inner), ran=[*inner, *inner]))
-    assert reasons.text("light.b") == "Last ran: the pass"
+    assert reasons.text("light.b") == "Last ran because of: the pass"
     assert reasons.text("light").split("\n") == [
-        *(f"{n} last ran: the pass" for n in "abcdef"),
+        *(f"{n} last ran because of: the pass" for n in "abcdef"),
         "and 2 more",
     ]
     assert reasons.text("lig") == ""

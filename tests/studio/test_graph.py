@@ -491,7 +491,7 @@ def test_a_node_says_why_its_pass_ran_last(passes_bare: Bare, monkeypatch: pytes
     for node, why in (("height", "the pass"), ("colour", "value tint"), ("view", "input colour")):
         bare.point(f"node {node}", 0.3)
         bare.run_frames(60)
-        assert tooltips[-1].endswith(f"\nLast ran: {why}")
+        assert tooltips[-1].endswith(f"\nLast ran because of: {why}")
 
 
 # ── nodes that are moved, wires that get a pass, all by keys ──────────────────

@@ -331,7 +331,7 @@ def test_the_history_lists_every_step_and_goes_there(bare: Bare) -> None:
 def test_what_is_set_is_copied(bare: Bare) -> None:
     bare.session.drafts.set_all({"height.level": 0.25, "height.kind": 1})
     bare.click("Copy")
-    bare.click("As --set words")
+    bare.click("As --set options")
     assert bare.clipboard == "--set height.level=0.25 --set height.kind=sharp"
     bare.run_frames(25)
     bare.click("Copy")

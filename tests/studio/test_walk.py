@@ -176,7 +176,7 @@ def test_a_map_has_no_ground_to_walk_on(open_session: OpenSession, folder: Path)
     session.frame((48, 32))
     walk = Walk(session)
     walk.toggle()
-    assert not walk.on and "no land" in session.notes[-1]
+    assert not walk.on and "no terrain" in session.notes[-1]
 
 
 def test_speed_has_bounds(open_session: OpenSession, folder: Path) -> None:

@@ -171,7 +171,7 @@ def _film(settings: ShowSettings) -> None:
             _, seconds = imgui.input_float("###seconds", settings.seconds, 0.0, 0.0, "%.2f s")
             settings.seconds = max(seconds, 0.0)
     else:
-        with row(tr("Seconds"), tr("Once around the land; it goes on without a jump when it is repeated")):
+        with row(tr("Seconds"), tr("Once around the terrain; it repeats without a jump")):
             _, around = imgui.input_float("###around", settings.around, 0.0, 0.0, "%.2f s")
             settings.around = max(around, 0.1)
     note = tr("Picture n is that of the time n / rate, however long drawing takes")
@@ -244,7 +244,7 @@ def _prospect(show: Show, look: Theme, *, enters: bool) -> None:
                     imgui.text_unformatted(note)
     imgui.spacing()
     if prospect.is_still and not show.refusal(TURNTABLE):
-        note = tr("The camera goes once round the land, and the time stands")
+        note = tr("The camera goes once around the terrain, and time stands still")
         if button(f"{tr('Make a turntable instead')}###instead", note):
             show.settings.kind = TURNTABLE
         imgui.same_line()

@@ -187,9 +187,9 @@ class Show:
         if session.sketch is None or session.plan is None:
             return tr("no picture is drawn yet")
         if kind == TURNTABLE and not session.orbits:
-            return tr("no camera goes round this picture: there is no land in it")
+            return tr("no camera can go around this picture: it has no terrain")
         if kind == MESH and not view_height(session.plan):
-            return tr("this sketch has no land that could be a mesh")
+            return tr("this sketch has no terrain that could be a mesh")
         return ""
 
     def form_refusal(self, kind: str, form: str) -> str:

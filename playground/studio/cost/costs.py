@@ -128,9 +128,9 @@ class RunReasons:
         """Return why a pass ran last, of a technique a line for each pass inside; "" where none ran yet."""
         inside = [path for path in self._latest if path == node or path.startswith(f"{node}.")]
         lines = [
-            (tr("Last ran: {why}") if path == node else tr("{path} last ran: {why}")).format(
-                path=path[len(node) + 1 :], why=_in_words(why(*self._latest[path]))
-            )
+            (
+                tr("Last ran because of: {why}") if path == node else tr("{path} last ran because of: {why}")
+            ).format(path=path[len(node) + 1 :], why=_in_words(why(*self._latest[path])))
             for path in inside[:_MAX_LINES]
         ]
         more = len(inside) - len(lines)

@@ -62,7 +62,7 @@ def draw_chooser(bench: Workbench, wiring: Wiring, look: Theme) -> None:
 def _search(bench: Workbench, graph: Graph) -> None:
     chooser = graph.chooser
     where = chooser.after + (f":{chooser.output}" if chooser.output else "")
-    words = tr("A pass behind {name}", name=where) if where else tr("A pass before the view")
+    words = tr("A pass after {name}", name=where) if where else tr("A pass before the view")
     if chooser.on is not None:
         words = tr("A pass between {giver} and {reader}", giver=chooser.on.giver, reader=chooser.on.reader)
     imgui.text_disabled(words)
@@ -88,7 +88,7 @@ def _rows(entries: list[Entry], outputs: tuple[str, ...], graph: Graph, look: Th
     imgui.begin_child("techniques", ImVec2(0, 0))
     if not entries:
         waits = not chooser.catalogue.is_whole
-        imgui.text_disabled(tr("techniques are being read…") if waits else tr("no technique is like that"))
+        imgui.text_disabled(tr("techniques are being read…") if waits else tr("no technique matches"))
     step = row + imgui.get_style().item_spacing.y
     top, room = imgui.get_scroll_y(), imgui.get_window_height()
     for number, entry in enumerate(entries):

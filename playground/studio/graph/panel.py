@@ -160,7 +160,7 @@ class GraphPanel:
         graph = self.graph
         with disabled(graph.inside is not None):
             if button(
-                f"+ {tr('Pass')}###add pass", tr("Add a pass before the view; + on a node adds one behind it")
+                f"+ {tr('Pass')}###add pass", tr("Add a pass before the view; + on a node adds one after it")
             ):
                 self._ask("")
         imgui.same_line()
@@ -186,14 +186,16 @@ class GraphPanel:
                 "Wire from {name}: arrows choose a pass, Enter joins, Esc lets go", name=graph.pulled.giver
             )
         elif graph.has_keys:
-            words = tr("Arrows choose, Enter opens, + adds, Del deletes; right click: all")
+            words = tr("Arrows choose, Enter opens, + adds, Del deletes; right click: menu")
             more = tr(
                 "Shift+arrows choose a wire, W begins one, M mutes, S shows, Ctrl+D duplicates,"
                 " Ctrl+arrows: earlier and later in the file, Ctrl+Shift+arrows move, T tidies, Esc: leave"
             )
         else:
-            words = tr("Double click: open. Drag: move, or onto a wire. Right click: all")
-            more = tr("A click chooses; a drag from a pin to another wires, into the empty it adds a pass")
+            words = tr("Double click: open. Drag: move, or onto a wire. Right click: menu")
+            more = tr(
+                "A click chooses; a drag from a pin to another wires them, to empty space it adds a pass"
+            )
         room = imgui.get_content_region_avail().x
         imgui.text_disabled(fitting(words, room))
         if more or fitting(words, room) != words:
@@ -387,7 +389,7 @@ class GraphPanel:
         if not target[1]:
             imgui.set_tooltip(tr("{name} takes no input", name=target[0]))
         else:
-            words = "{giver} is made from {reader} already: this would close a circle"
+            words = "{giver} is made from {reader} already: this would make a cycle"
             imgui.set_tooltip(tr(words, giver=giver, reader=target[0]))
 
     def _pin_marks(self, wiring: Wiring, canvas: Canvas, pins: Pins) -> None:
@@ -415,7 +417,7 @@ class GraphPanel:
             )
         if lit is not None and self.graph.pulled is None:
             imgui.set_tooltip(
-                tr("{name}: drag it to an input, or into the empty to add a pass", name=":".join(lit))
+                tr("{name}: drag it to an input, or to empty space to add a pass", name=":".join(lit))
             )
         elif lit_in is not None and self.graph.pulled is None:
             imgui.set_tooltip(".".join(lit_in))
@@ -526,7 +528,7 @@ class GraphPanel:
         row: tuple[tuple[str, bool, str, Callable[[], object]], ...] = (
             ("M", node.is_muted, mute, lambda: edits.mute(node.name)),
             ("S", node.is_shown, solo, lambda: edits.solo(node.name, node.ref)),
-            ("+", False, tr("Add a pass behind it (+)"), lambda: self._ask(node.name)),
+            ("+", False, tr("Add a pass after it (+)"), lambda: self._ask(node.name)),
         )
         side, size = 17.0, 12.5 * canvas.k
         for number, (sign, is_lit, note, act) in enumerate(row):
@@ -702,7 +704,7 @@ class GraphPanel:
         if own:
             rows += [
                 ("mute", mute, "M", not is_view, lambda: edits.mute(node)),
-                ("behind", tr("Add a pass behind…"), "+", not is_view, lambda: self._ask(node)),
+                ("behind", tr("Add a pass after…"), "+", not is_view, lambda: self._ask(node)),
                 ("duplicate", tr("Duplicate"), "Ctrl+D", not is_view, self._duplicate),
                 ("earlier", tr("Earlier in the file"), "Ctrl+←", not is_view, lambda: edits.move(node, -1)),
                 ("later", tr("Later in the file"), "Ctrl+→", not is_view, lambda: edits.move(node, 1)),

@@ -89,7 +89,7 @@ class TerrainGroup:
         opened = header(f"{tr('Terrain')}###terrain", look, imgui.TreeNodeFlags_.allow_overlap)
         if opened != before:
             preferences.choose(panes={**preferences.panes, _OPEN: float(opened)})
-        imgui.set_item_tooltip(tr("The land: its metres, its sun, its looks, and where it is seen from"))
+        imgui.set_item_tooltip(tr("The terrain: its size, sun and look, and where it is seen from"))
         plan, draft = session.plan, session.shown
         if not opened or plan is None or draft is None:
             return
@@ -102,7 +102,9 @@ class TerrainGroup:
                 self._sea(sketch, session, draft, rows)
             else:
                 with wrapped():
-                    imgui.text_disabled(tr("This sketch makes no heights, so there is no land to measure."))
+                    imgui.text_disabled(
+                        tr("This sketch makes no heights, so there is no terrain to measure.")
+                    )
                 if plan.terrain.size is not None:
                     self._size(session, plan.terrain.size)
             if imgui.tree_node_ex(f"{tr('Sun')}###sun"):
@@ -139,7 +141,7 @@ class TerrainGroup:
 
     def _exaggeration(self, session: Session) -> None:
         factor = session.exaggeration
-        note = tr("How many times higher the land is drawn and lit; no data changes, and no file")
+        note = tr("Vertical: how many times higher the terrain is drawn and lit; no data or file changes")
         with row(tr("Exaggeration"), note, edited=factor != 1.0):
             wide, style = imgui.calc_item_width() + slots_width(), imgui.get_style()
             start = imgui.get_cursor_pos_x()
@@ -160,7 +162,7 @@ class TerrainGroup:
 
     def _look(self, session: Session) -> None:
         now = session.view.look.name if session.view.look is not None else LOOKS[0]
-        note = tr("Other colours and light for the same land; the sketch stays as it is")
+        note = tr("Other colours and light for the same terrain; the sketch stays as it is")
         with row(tr("Look"), note, edited=now != LOOKS[0]):
             name = choose(f"{TYPE_ROW}look", fitting_choice(look_title(now)), LOOKS, now, name=look_title)
         shown = session.view.look
@@ -277,7 +279,7 @@ class TerrainGroup:
         if sketch is None or not session.orbits:
             imgui.text_disabled(tr("this picture has no camera"))
             return
-        if button(f"{tr('From above')}###above", tr("All of the land as a map, north on top")):
+        if button(f"{tr('From above')}###above", tr("All of the terrain as a map, north up")):
             session.turn_table(False)
             session.drafts.set_camera(from_above(sketch.camera))
         imgui.same_line()
@@ -287,7 +289,7 @@ class TerrainGroup:
         turns = session.view.turning
         label = tr("Stop") if turns else tr("Turntable")
         next_in_row(label)
-        if button(f"{label}###turntable", tr("Goes slowly round the land")):
+        if button(f"{label}###turntable", tr("Goes slowly around the terrain")):
             walk.end()
             session.turn_table(not turns)
         label = tr("Stop walking") if walk.on else tr("Walk")

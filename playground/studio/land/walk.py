@@ -141,7 +141,7 @@ class Walk:
         session.turn_table(False)
         plan, land = session.plan, self._land()
         if plan is None or session.sketch is None or land is None or not session.orbits:
-            session.notes.append(tr("there is no land in this picture to walk on"))
+            session.notes.append(tr("there is no terrain in this picture to walk on"))
             return
         heights, extent, relief = land
         place = ground_under(plan.eye, (0.5, 0.5), heights, extent, relief)

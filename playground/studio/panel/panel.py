@@ -238,7 +238,7 @@ def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
         next_in_row(tr("Random"))
         _randomise(memory, bench.actions)
         next_in_row("A/B")
-        if button("A/B", tr("Keep this as A, go on with B, and compare the two; or no longer (A)")):
+        if button("A/B", tr("Keep this as A, go on with B and compare the two, or end that (A)")):
             bench.inspection.compare.toggle()
         next_in_row(tr("Reset"))
         _resets(bench.actions)
@@ -250,15 +250,15 @@ def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
         if button("PNG", tr("Save the picture as a new file in {folder} (S)", folder=bench.actions.folder)):
             bench.actions.save_picture()
         next_in_row(tr("Graph"))
-        if button(tr("Graph"), tr("The passes as a graph, or no longer (G)")):
+        if button(tr("Graph"), tr("Show or hide the passes as a graph (G)")):
             bench.toggle_passes()
         next_in_row(tr("Trace"))
         if button(
-            tr("Trace"), tr("Every value of the texel under the mouse beside the code, or no longer (T)")
+            tr("Trace"), tr("Show or hide every value of the texel under the mouse beside the code (T)")
         ):
             bench.tracing.toggle()
         next_in_row(tr("Code"))
-        if button(f"{tr('Code')}###code", tr("The sketch's text beside the picture, or no longer (Ctrl+E)")):
+        if button(f"{tr('Code')}###code", tr("Show or hide the sketch's text beside the picture (Ctrl+E)")):
             bench.toggle_code()
 
 
@@ -392,7 +392,9 @@ def _copies(memory: PanelState, actions: Actions) -> None:
         if not opened:
             return
         draft = actions.session.shown
-        if draft is not None and imgui.menu_item_simple(tr("As --set words"), "", False, bool(draft.applied)):
+        if draft is not None and imgui.menu_item_simple(
+            tr("As --set options"), "", False, bool(draft.applied)
+        ):
             text = set_words(draft)
             imgui.set_clipboard_text(text)
             actions.notices.say(tr("copied {text}", text=fitting(text, 320.0)))

@@ -250,7 +250,7 @@ class Sections:
             return
         values, sections = shown_values(draft), filtered(draft, memory.filter)
         if memory.filter and not sections:
-            imgui.text_disabled(tr("no parameter is like that"))
+            imgui.text_disabled(tr("no parameter matches"))
         rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, look, bench.controllers)
         reasons = bench.inspection.reasons
         drawing = _Drawing(Path(sketch.folder), rows, bench.actions, bench.files, reasons)

@@ -48,9 +48,7 @@ TEMPLATES = (
     Template(
         "elevation", "From an elevation file…", "A GeoTIFF, an HGT, a PNG of heights: lit, in metres", "file"
     ),
-    Template(
-        "shader", "From a shader of another tool…", "Of Shadertoy, ISF or with a main of its own", "file"
-    ),
+    Template("shader", "From a shader of another tool…", "From Shadertoy, ISF or with its own main", "file"),
     Template("clipboard", "From the clipboard", "A shader's text that was copied"),
     Template("lesson", "From a lesson…", "Its terrain, explained step by step while you change it"),
 )

@@ -76,7 +76,7 @@ class StartPanel:
                 if cards:
                     self._draw_group(page, group, f"{tr(heading)}  ({len(cards)})", cards, look)
             if not found:
-                imgui.text_disabled(tr("Nothing fits {search}.", search=page.search))
+                imgui.text_disabled(tr("Nothing matches {search}.", search=page.search))
             imgui.end_child()
 
     def release(self) -> None:

@@ -43,7 +43,7 @@ def _draw(tracing: Tracing, look: Theme) -> None:
             tracing.toggle()
         with wrapped():
             imgui.text_disabled(
-                tr("Every value of the texel under the mouse, behind the lines of the code that gave it")
+                tr("Every value of the texel under the mouse, next to the lines of code that gave it")
             )
         return
     imgui.begin_child("trace", ImVec2(0, 0), imgui.ChildFlags_.nav_flattened)
@@ -76,7 +76,7 @@ def _head(tracing: Tracing, look: Theme) -> None:
     _flow(wide)
     imgui.set_next_item_width(wide)
     now = tracing.compared.beside
-    beside = choose("##beside", tr("beside: {name}", name=_beside(now)), Beside, now, name=_beside)
+    beside = choose("##beside", tr("compare with: {name}", name=_beside(now)), Beside, now, name=_beside)
     if beside is not None:
         tracing.compare(beside)
     if view is not None and tracing.other() is not None:
@@ -207,7 +207,7 @@ def _call_of(head: FunctionHead, number: int) -> str:
 
 def _probe(tracing: Tracing, look: Theme) -> None:
     """Draw the field of an expression, and what shows it."""
-    where = tr("behind line {line}", line=tracing.caret.line) if tracing.caret.line else tr("behind a line")
+    where = tr("after line {line}", line=tracing.caret.line) if tracing.caret.line else tr("after a line")
     shows = isinstance(tracing.session.view.map, ProbeMap)
     labels = tr(_BACK) if shows else tr(_SHOW), tr(_FIND)
     imgui.align_text_to_frame_padding()

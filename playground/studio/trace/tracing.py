@@ -569,7 +569,7 @@ def complaint(error: PlaygroundError, probe: Probe) -> str:
 
 
 def _name_of(probe: Probe) -> str:
-    return tr("{expression} behind line {line}", expression=probe.expression, line=probe.line)
+    return tr("{expression} after line {line}", expression=probe.expression, line=probe.line)
 
 
 def run_events(trace: Trace, path: str, line: int) -> list[Event]:

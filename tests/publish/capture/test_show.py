@@ -433,7 +433,7 @@ def test_a_sheet_of_a_sweep(show: Show) -> None:
 
 
 def test_what_does_not_apply_is_refused_with_a_reason(show: Show, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert show.refusal(TURNTABLE) == "no camera goes round this picture: there is no land in it"
+    assert show.refusal(TURNTABLE) == "no camera can go around this picture: it has no terrain"
     assert not any(show.refusal(kind) for kind in KINDS if kind != TURNTABLE)
     monkeypatch.setitem(__import__("sys").modules, "av", None)
     monkeypatch.setenv("PATH", "")
@@ -446,7 +446,7 @@ def test_what_does_not_apply_is_refused_with_a_reason(show: Show, monkeypatch: p
 def test_a_sketch_without_terrain_has_no_mesh(opened: Callable[..., Show], tmp_path: Path) -> None:
     (tmp_path / "plain.frag").write_text("void main() { gl_FragColor = vec4(0.5, 0.2, 0.1, 1.0); }\n")
     plain = opened(tmp_path / "plain.frag", SIZE)
-    assert plain.refusal(MESH) == "this sketch has no land that could be a mesh"
+    assert plain.refusal(MESH) == "this sketch has no terrain that could be a mesh"
     assert plain.refusal(TURNTABLE) and not plain.refusal(PICTURE)
     plain.settings.kind = MESH
     assert plain.prospect.error == plain.refusal(MESH)
