@@ -19,6 +19,7 @@ from playground.studio.addition import Addition, Layer
 from playground.studio.bench import Host, Workbench
 from playground.studio.keys import Key
 from playground.studio.start.page import Card
+from playground.studio.start.thumbnails import thumbnails
 
 if TYPE_CHECKING:
     from playground.course.window.panel import LessonPanel
@@ -56,7 +57,10 @@ class Lessons(Addition):
         self.reader.toggle()
 
     def start_cards(self) -> Iterator[Card]:
-        """Yield a card for each lesson."""
+        """Yield a card for each lesson, with the small picture of its hero's sketch."""
+        from playground.course.figures import hero_sketches
+
+        sketches, cells = hero_sketches(), {row.name: row.cell for row in thumbnails()}
         for summary in self.reader.summaries:
             yield Card(
                 f"lesson {summary.name}",
@@ -64,6 +68,7 @@ class Lessons(Addition):
                 summary.goal,
                 partial(self.reader.open, summary.name),
                 "lesson",
+                cell=cells.get(sketches.get(summary.name, ""), -1),
                 words=summary.name.replace("_", " "),
             )
 

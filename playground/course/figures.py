@@ -114,6 +114,11 @@ class Hero:
     alt: Mapping[str, str]  # what it shows, by language
 
 
+def hero_sketches(path: Path = FILE) -> dict[str, str]:
+    """Return the sketch of each lesson's hero, by lesson."""
+    return {lesson: str(table.get("sketch", "")) for lesson, table in _file(path).table.items()}
+
+
 def hero_of(lesson: str, sketches: Sketches | None = None, path: Path = FILE) -> Hero | None:
     """Return the hero of a lesson, None where it has none.
 

@@ -12,6 +12,7 @@ from playground.course.scenes import Sketches
 from playground.course.window.panel import follow
 from playground.errors import SketchError
 from playground.sketch.find import find
+from playground.studio.start.thumbnails import thumbnails
 
 from .lesson_desk import FILE, value
 
@@ -222,6 +223,14 @@ def test_a_lesson_begins_in_a_language_by_a_request_or_a_card(harness):
     harness.lessons.begin({"lesson": "halving", "language": "fr"})
     harness.run_frames(3)
     assert harness.reader.lesson.title == "Moitiés" and harness.session.path == find("white_noise")
+
+
+def test_a_lesson_s_card_has_the_picture_of_its_hero_s_sketch(harness, monkeypatch):
+    drawn = {"halving": "white_noise"}
+    monkeypatch.setattr("playground.course.figures.hero_sketches", lambda: drawn)
+    halving, after = harness.lessons.start_cards()
+    place = next(row.cell for row in thumbnails() if row.name == "white_noise")
+    assert (halving.cell, after.cell) == (place, -1) and place >= 0
 
 
 def test_a_trace_is_stepped_through_and_its_question_checked(harness):
