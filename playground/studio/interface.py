@@ -33,6 +33,7 @@ HINTS = {"?": "all keys", "O": "new, open, examples", "Ctrl+E": "code beside the
 
 FORMAT = 1
 _MAX_BYTES = 2**16  # [bytes]
+_MAX_SIZE = 1e4  # of a pane
 
 
 @dataclass
@@ -104,8 +105,12 @@ def remembered_preferences(folder: Path | None = None) -> Preferences:
     preferences.used_keys = tuple(key for key in HINTS if isinstance(used, list) and key in used)
     panes = table.get("panes")
     if isinstance(panes, dict):
-        preferences.panes = {name: float(v) for name, v in panes.items() if isinstance(v, int | float)}
+        preferences.panes = {name: float(v) for name, v in panes.items() if _is_size(v)}
     return preferences
+
+
+def _is_size(value: object) -> bool:
+    return isinstance(value, int | float) and abs(value) <= _MAX_SIZE  # no NaN, nor what no float holds
 
 
 @dataclass(frozen=True)
@@ -165,7 +170,7 @@ class Panes:
         return steps
 
     def fraction(self, name: str, otherwise: float) -> float:
-        """Return the part of the window that a pane takes."""
+        """Return the part of the window that a pane takes, or the width of one that keeps its own."""
         return self.preferences.panes.get(name, otherwise)
 
     def remember(self, name: str, value: float) -> None:

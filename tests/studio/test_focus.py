@@ -395,7 +395,7 @@ def test_keys_move_the_edge_of_each_pane(desk: Desk) -> None:
     first = size("panel")[0]
     desk.key(K.mod_alt, K.keypad_add)
     desk.run_frames(2)
-    assert size("panel")[0] == first + 20 == desk.panel.width
+    assert size("panel")[0] == first + 20 == desk.bench.panes.fraction("panel width", 0.0)
     for _ in range(40):
         desk.key(K.mod_alt, K.keypad_subtract)
     assert size("panel")[0] == 240, "no narrower than the mouse makes it"

@@ -23,6 +23,7 @@ from playground.studio.graph.graph import (
 )
 from playground.studio.graph.layout import LANE, Layout, layout_of, nearest_node
 from playground.studio.graph.panel import passes_tab
+from playground.studio.theme import PANEL_WIDTH
 
 from ..loading import load
 from ..sketch_texts import passes
@@ -473,7 +474,7 @@ def test_the_panel_s_head_has_a_button_for_it_and_room_for_all(
     margin = imgui.get_style().window_padding.x
     for label in "Undo Redo History Random A/B Reset Copy Save PNG Graph".split():
         x, _, width, _ = bare.places[label]
-        assert margin <= x and x + width <= bare.panel.width * scale - margin, label
+        assert margin <= x and x + width <= PANEL_WIDTH * scale - margin, label
     graph = bare.bench.inspection.graph
     assert graph.on
     bare.click("Graph")

@@ -219,7 +219,7 @@ def test_a_language_takes_effect_at_once(bare: Bare) -> None:
 @pytest.mark.parametrize("wide", [240.0, PANEL_WIDTH])
 def test_no_button_of_the_panel_is_cut_off(bare: Bare, code: str, wide: float) -> None:
     choose_language(code)
-    bare.panel.width = wide
+    bare.bench.panes.remember("panel width", wide)
     sizes: dict[str, float] = {}
 
     def measure(draw: Callable[[], object]) -> None:

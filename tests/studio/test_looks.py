@@ -106,6 +106,9 @@ def test_what_is_chosen_is_remembered(tmp_path: Path) -> None:
     file.write_text(json.dumps({"format": 1, "size": 1.25, "is_light": 3, "panes": []}))
     again = remembered_preferences(tmp_path)
     assert (again.size, again.is_light, again.panes) == (1.25, False, {})
+    sizes = f'{{"code": 1, "panel width": 1{"0" * 400}, "code width": NaN, "strip height": 1e999}}'
+    file.write_text(f'{{"format": 1, "panes": {sizes}}}')
+    assert set(remembered_preferences(tmp_path).panes) <= {"code"}
 
 
 TABS = [Tab("one", "One", lambda look: None)]

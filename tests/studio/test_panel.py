@@ -20,6 +20,7 @@ from playground.sketch.model import Camera, Parameter
 from playground.studio import draw as panel_rows
 from playground.studio.draw import fitting_path, tooltip_waits
 from playground.studio.keys import GESTURES, all_keys, keys_by_subject
+from playground.studio.panel.panel import Panel
 from playground.studio.panel.values import decimals, format_of, snapped
 from playground.studio.picture.gestures import Gesture, steered
 from playground.studio.problems.panel import numbered, short_place
@@ -181,7 +182,7 @@ def test_saved_value_has_fewest_digits_and_belongs_to_file(bare: Bare, folder: P
 
 def test_panel_footer_lines_fit_at_any_width(bare: Bare) -> None:
     for width in (240.0, 330.0, 620.0):
-        bare.panel.width = width
+        bare.bench.panes.remember("panel width", width)
         bare.run_frames(3)
         panel = imgui.internal.find_window_by_name("panel")
         assert panel.content_size.y + 2 * panel.window_padding.y <= panel.size.y + 1, width
@@ -191,11 +192,27 @@ def test_panel_footer_lines_fit_at_any_width(bare: Bare) -> None:
 def test_no_scale_of_the_window_counts_as_a_pull(bare: Bare, wide: int) -> None:
     imgui.get_io().display_size = ImVec2(wide, 410)
     for width in (240.0, 330.0, 620.0):
-        bare.panel.width = width
+        bare.bench.panes.remember("panel width", width)
         for scale in (1.37, 0.689, 1.23, 1.0):
             bare.theme.rescale(scale)
             bare.run_frames(3)
-            assert bare.panel.width == width, scale
+            assert bare.bench.panes.fraction("panel width", 0.0) == width, scale
+
+
+def test_the_panel_keeps_the_width_to_which_it_is_pulled(bare: Bare) -> None:
+    mouse, panes = imgui.get_io(), bare.bench.panes
+    mouse.add_mouse_pos_event(PANEL_WIDTH - 1, 300)
+    bare.run_frames(2)
+    bare.press(True)
+    mouse.add_mouse_pos_event(PANEL_WIDTH + 69, 300)
+    bare.run_frames(2)
+    assert panes.fraction("panel width", 0.0) == 0.0, "nothing is written while it is pulled"
+    bare.press(False)
+    bare.run_frames(2)
+    assert panes.fraction("panel width", 0.0) == PANEL_WIDTH + 70
+    bare.panel = Panel()
+    bare.run_frames(2)
+    assert imgui.internal.find_window_by_name("panel").size.x == PANEL_WIDTH + 70
 
 
 def test_preset_shows_changes_since_and_new_one_is_saved(bare: Bare, folder: Path) -> None:

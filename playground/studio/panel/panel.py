@@ -66,25 +66,28 @@ _LOW = 400.0
 """[units of scale 1] of a window's height below which the head scrolls with the rest."""
 
 
+_WIDTH = "panel width"  # [units of scale 1] among what panes remember
+
+
 @dataclass
 class Panel:
-    """The panel's own memory: its width, what is searched for and typed in it."""
+    """The panel's own memory: what is searched for and typed in it."""
 
-    width: float = theme.PANEL_WIDTH  # in units of scale 1
     memory: PanelState = field(default_factory=PanelState)
 
     def __post_init__(self) -> None:
         self._sections = Sections(self.memory)
         self._keyframes = KeyframeList()
+        self._pulled = 0.0  # [units of scale 1] to which width its edge is pulled; 0: nobody pulls it
 
     def draw(self, bench: Workbench, look: Theme, left: float = 0.0) -> float:
         """Draw the panel over the window's left side; return the width it takes, in the window's units.
 
         ``left``: what is taken there already.
         """
-        room = imgui.get_main_viewport().size
-        steps = bench.panes.take_steps("panel")
-        target = place_side_panel(self.width, (240, 620), look, left=left, beside=160, steps=steps)
+        room, panes = imgui.get_main_viewport().size, bench.panes
+        steps, chosen = panes.take_steps("panel"), self._pulled or panes.fraction(_WIDTH, theme.PANEL_WIDTH)
+        target = place_side_panel(chosen, (240, 620), look, left=left, beside=160, steps=steps)
         imgui.begin("panel", None, SIDE_PANEL)
         if bench.interface.searching and not bench.interface.keymap_shown:
             bench.interface.searching, self.memory.focus_search = False, True
@@ -114,8 +117,11 @@ class Panel:
             _footer(footer, look)
         width = imgui.get_window_size().x
         imgui.end()
-        if width != target:  # pulled; a narrow window alone makes it no narrower for good
-            self.width = width / look.scale
+        if width != target:  # a narrow window alone makes it no narrower for good
+            self._pulled = width / look.scale
+        elif self._pulled and not imgui.is_mouse_down(0):
+            panes.remember(_WIDTH, self._pulled)
+            self._pulled = 0.0
         return width
 
     def _draw_head(self, bench: Workbench, look: Theme) -> None:
