@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import random
 
 import pytest
@@ -23,7 +22,6 @@ from playground.sketch.wiring import (
     takes_input,
 )
 
-from ..cases import each
 from ..loading import load
 
 
@@ -442,7 +440,8 @@ def test_an_edited_file_is_wired_anew(make):
 
 
 @pytest.mark.slow
-@each(("name", "variants"), list(itertools.product(shipped_sketches(), [(), ("passes",), VARIANTS])))
+@pytest.mark.parametrize("variants", [(), ("passes",), VARIANTS], ids=["none", "passes", "all"])
+@pytest.mark.parametrize("name", shipped_sketches())
 def test_every_shipped_sketch_runs_in_the_order_of_its_wires(name, variants):
     done: set[str] = set()
     for node in substitute_variants(flatten(load(name)), variants).nodes:

@@ -344,7 +344,7 @@ def test_a_shipped_sketch_is_not_written_to_but_copied(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@each("path", sorted(SKETCHES.glob("*.toml")), ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", sorted(SKETCHES.glob("*.toml")), ids=lambda p: p.stem)
 def test_what_is_not_set_changes_nothing(path: Path) -> None:
     sketch = load(path)
     text = path.read_bytes().decode()
