@@ -31,6 +31,7 @@ class Cache:
         pool.make_room = self.make_room
         self._cached: OrderedDict[str, Cached] = OrderedDict()
         self._in_use: set[str] = set()
+        self._stale: set[str] = set()  # not used since the last ``turn_over``
         self._may_grow: set[str] = set()  # used since they were weighed
         self._sizes: dict[str, int] = {}  # [bytes] of what is cached, when last weighed
         self._total = 0  # their sum
@@ -78,6 +79,7 @@ class Cache:
             self.hits += 1
             self._cached.move_to_end(key)
             self._in_use.add(key)
+            self._stale.discard(key)
             self._may_grow.add(key)
             if cached.versions is not None:
                 cached.versions.move_to_end(key)
@@ -96,6 +98,7 @@ class Cache:
             self.drop(key)
         self._cached[key] = cached
         self._in_use.add(key)
+        self._stale.discard(key)
         self._may_grow.add(key)
         self.weigh(key)
         of = (loop, None) if loop else (next(iter(cached.results)), cached.result.size)
@@ -156,6 +159,17 @@ class Cache:
         for key in [key for key in self._cached if key not in self._in_use]:
             self.drop(key)
         self.states.retain(self._in_use)
+
+    def turn_over(self) -> None:
+        """Drop what was not used since the last call; called when a frame has shown another sketch.
+
+        So the results of two sketches stay, for whoever goes back and forth between them, and not of all that
+        were opened.
+        """
+        for key in self._stale:
+            self.drop(key)
+        self._stale = set(self._cached) - self._in_use
+        self.states.retain(set(self._cached))
 
     def trim(self) -> None:
         """Drop what was used least recently, then earlier states, until the bounds hold.

@@ -547,8 +547,8 @@ class Session:
 
     def _draw(self, sketch: Sketch, size: tuple[int, int], **how: bool) -> None:
         """Draw a sketch; ``how``: ``in_full``, ``in_pieces``, ``coming``: see ``ShownPicture.draw``."""
-        engine, traits = self.engine, traits_of(sketch)
-        if self.drafts.opening:
+        engine, traits, opening = self.engine, traits_of(sketch), self.drafts.opening
+        if opening:
             self.picture.forget()
         drawn = self.picture.draw(
             engine, sketch, self.view, self.catch_up, size=size, time=self.clock.time, **how
@@ -562,6 +562,8 @@ class Session:
             return
         self.draws += 1
         self.plan = engine.record.plan
+        if opening:
+            engine.cache.turn_over()
         if engine.eye_height.message:
             self._note_once("ground", engine.eye_height.message)
 

@@ -526,6 +526,28 @@ def test_stop_step_survives_save_and_is_dropped_if_out_of_range(bench: Bench) ->
     np.testing.assert_array_equal(bench.picture(), whole)
 
 
+def test_results_of_the_last_two_sketches_are_kept(tmp_path: Path, open_session: OpenSession) -> None:
+    for name, level in (("one", 0.2), ("two", 0.4), ("three", 0.6)):
+        (tmp_path / name / "inc").mkdir(parents=True)
+        for file, text in SLOPE.items():
+            (tmp_path / name / file).write_text(text.replace("0.25", str(level)), encoding="utf-8")
+    session = open_session(tmp_path / "one")
+    session.frame(SIZE)
+
+    def ran(name: str) -> bool:
+        """Open a sketch; return whether its terrain was made."""
+        session.open(tmp_path / name)
+        session.frame(SIZE)
+        made = "height" in session.engine.record.ran
+        assert session.path.parent.name == name and session.error is None
+        session.frame(SIZE)
+        return made
+
+    assert [ran(name) for name in ("two", "one", "two", "one")] == [True, False, False, False]
+    assert [ran(name) for name in ("three", "one")] == [True, False]
+    assert [ran(name) for name in ("two", "one")] == [True, False], "two was the last but one"
+
+
 def test_an_eye_under_the_terrain_is_reported_once(tmp_path: Path, open_session: OpenSession) -> None:
     (tmp_path / "sketch.toml").write_text(SKETCH_3D, encoding="utf-8")
     session = open_session(tmp_path / "sketch.toml")
